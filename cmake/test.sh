@@ -3,9 +3,9 @@
 #   bash cmake/test.sh           the test suite: 20 to 25 minutes on two cores
 #   bash cmake/test.sh --all     also clang with -Werror and sanitizers, clang-tidy, and the
 #                                reference (CI runs this; CI=true means the same)
-#   bash cmake/test.sh --doors   only a build without vectors and threads, and every way to
-#                                link the package (test/consumer), with gcc and clang and
-#                                each set of flags: an hour or more
+#   bash cmake/test.sh --doors   only a build without vectors and threads, the examples with
+#                                engines, and every way to link the package (test/consumer),
+#                                with gcc and clang and each set of flags: an hour or more
 #   bash cmake/test.sh --compilers [COMPILER ...]
 #                                only library, program, examples, some tests and two ways to
 #                                link, with those of g++ 11 to 14 and clang++ 14, 16 and 19
@@ -69,7 +69,11 @@ if [ ${#compilers[@]} -gt 0 ]; then
   exit
 fi
 
-if $all || $doors; then
+if $doors; then
+  # With the engines of examples/.
+  fcl_ccd_install_dependencies all libompl-dev libbullet-dev libdart-dev \
+    libdart-external-ikfast-dev libdart-external-odelcpsolver-dev
+elif $all; then
   fcl_ccd_install_dependencies all
 else
   fcl_ccd_install_dependencies test
@@ -129,6 +133,7 @@ if $doors; then
   build plain
   watched ctest --preset plain -j "$jobs"
   build release -DFCL_CCD_BUILD_PYTHON=ON
+  watched ctest --preset release -L examples
   for compiler in g++ clang++; do
     watched bash test/consumer/run.sh build/release "$compiler" "build/release/doors_$compiler"
   done

@@ -1,0 +1,438 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A response to contacts, to copy into an engine. A step of a simulation proposes
+// positions; respond() changes them until the exact continuous query finds no contact on
+// the way. So a state without crossings leads to another one.
+//
+// First there are rounds of impulses. Each contact keeps its two features apart, by their
+// masses and with friction. The impulses of a contact add up to zero: linear momentum is
+// kept.
+//
+// Where contacts are left after these rounds, the vertices that meet become a rigid zone.
+// It keeps the linear momentum of its vertices, and to first order the angular one, or it
+// moves with the obstacle that is in it. Zones that meet become one.
+//
+// A zone that still has contacts stands still for the step. So the rounds end.
+//
+// The zones are those of Provot 1997, "Collision and self-collision handling in cloth
+// model dedicated to design garments", and of Bridson, Fedkiw and Anderson 2002, "Robust
+// treatment of collisions, contact and friction for cloth animation".
+#ifndef CONTACT_RESPONSE_H
+#define CONTACT_RESPONSE_H
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <fcl/geometry/bvh/deformable_bvh_model.h>
+#include <fcl/narrowphase/continuous_collision.h>
+#include <fcl/narrowphase/continuous_contact.h>
+
+namespace contact_response {
+
+using Positions = std::vector<fcl::Vector3d>;
+
+struct Options {
+  /// The distance that impulses leave between two features, above min_distance, in the
+  /// unit of the coordinates. Above 0: features that touch at the beginning of a step
+  /// cannot be parted.
+  double margin;
+  /// The distance at which features are in contact. 0: where they touch. Above 0, pairs
+  /// that are nearer than that at the beginning of the step may not come nearer.
+  double min_distance{0};
+  /// Coulomb's coefficient.
+  double friction{.3};
+  /// Rounds of a query and impulses before there are zones, and passes over all contacts
+  /// in each.
+  int impulse_rounds{10};
+  int passes{20};
+  /// Rounds with zones that move, before zones stand still.
+  int zone_rounds{20};
+  /// Whether the engine keeps positions in float: the motion that is found free is that
+  /// of rounded positions.
+  bool rounds_to_float{false};
+  /// Threads of the queries; the answer does not depend on it.
+  int num_threads{1};
+};
+
+struct Report {
+  int queries{0};
+  /// Contacts of the motion that was proposed.
+  std::size_t contacts{0};
+  /// Vertices that moved in zones, and those of zones that stand still.
+  std::size_t in_zones{0};
+  std::size_t stopped{0};
+  /// Whether an obstacle is among those: continue its motion from where it stands.
+  bool has_stopped_obstacle{false};
+  /// The state before the step had an edge that passes through a triangle: nothing was
+  /// changed.
+  bool initially_crossing{false};
+  /// Contacts of the motion that is returned: of features that touch at the beginning,
+  /// else 0.
+  std::size_t unresolved{0};
+};
+
+/// The nearest position whose coordinates are floats.
+inline fcl::Vector3d roundedToFloat(const fcl::Vector3d& p) {
+  fcl::Vector3d out;
+  for (int k = 0; k < 3; ++k) {
+    const volatile float x =
+        static_cast<float>(p[k]);  // gcc 12 leaves out the conversion
+    out[k] = static_cast<double>(x);
+  }
+  return out;
+}
+
+/// One step. `model` has the mesh of all bodies, deforming ones and obstacles.
+template <typename BV>
+class Step {
+ public:
+  /// @param inverse_masses  of the vertices; 0: an obstacle, which moves as proposed
+  Step(fcl::DeformableBVHModel<BV>& model, const Options& options,
+       const std::vector<double>& inverse_masses, const Positions& before,
+       Positions& after)
+      : model_(model),
+        options_(options),
+        inverse_masses_(inverse_masses),
+        before_(before),
+        after_(after) {
+    if (!(options.margin > 0) || !(options.min_distance >= 0) ||
+        options.impulse_rounds < 0)
+      throw std::invalid_argument(
+          "The margin must be above 0, other options not below it");
+    if (before.empty() || before.size() != after.size() ||
+        before.size() != inverse_masses.size())
+      throw std::invalid_argument("Positions and inverse masses: one for each vertex");
+    for (const double w : inverse_masses)
+      if (!(w >= 0) || !std::isfinite(w))
+        throw std::invalid_argument("An inverse mass is a number that is not below 0");
+    if (options.rounds_to_float)
+      for (const fcl::Vector3d& p : before)
+        if (p != roundedToFloat(p))
+          throw std::invalid_argument(
+              "With rounds_to_float the positions before are floats");
+  }
+
+  Report run() {
+    for (int round = 0; round <= options_.impulse_rounds; ++round) {
+      query();
+      if (round == 0) report_.contacts = found_.contacts.size();
+      report_.initially_crossing = found_.initially_crossing;
+      report_.unresolved = found_.contacts.size();
+      if (found_.contacts.empty() || found_.initially_crossing) return report_;
+      if (round == options_.impulse_rounds) break;
+      for (const auto& contact : found_.contacts) addConstraint(contact);
+      for (int i = 0; i < options_.passes; ++i)
+        for (const Constraint& constraint : constraints_) project(constraint);
+    }
+    moveZones();
+    return report_;
+  }
+
+ private:
+  /// The first feature minus the second one at the place of the contact: the weights of
+  /// their vertices, which add up to 0.
+  struct Constraint {
+    int size;
+    std::size_t vertex[4];
+    double weight[4];
+    fcl::Vector3d direction;  // unit, from the second feature to the first one
+    double gap;               // that has to be left along it
+  };
+
+  void query() {
+    if (options_.rounds_to_float)
+      for (fcl::Vector3d& p : after_) p = roundedToFloat(p);
+    if (model_.updateFrames(before_[0].data(), after_[0].data(), after_.size()) !=
+        fcl::BVH_OK)
+      throw std::runtime_error(model_.lastError());
+    fcl::ContinuousContactRequestd request;
+    request.min_distance = options_.min_distance;
+    request.ignore_initially_closer = options_.min_distance > 0;
+    request.num_threads = options_.num_threads;
+    found_ = {};
+    fcl::continuousSelfCollide(&model_, request, found_);
+    ++report_.queries;
+  }
+
+  static std::size_t vertexOf(const fcl::ContinuousContactd& contact, int k) {
+    return static_cast<std::size_t>(contact.vertices[static_cast<std::size_t>(k)]);
+  }
+
+  static double clamped(double x) { return std::min(1., std::max(0., x)); }
+
+  /// Where the foot of a point on an edge lies, from 0 to 1.
+  static double along(const fcl::Vector3d& p, const fcl::Vector3d& a,
+                      const fcl::Vector3d& b) {
+    const double square = (b - a).squaredNorm();
+    return square > 0 ? clamped((p - a).dot(b - a) / square) : .5;
+  }
+
+  void addConstraint(const fcl::ContinuousContactd& contact) {
+    using Kind = fcl::ContinuousContactKind;
+    Constraint c{};
+    c.size = contact.numVertices();
+    fcl::Vector3d x[4];
+    for (int k = 0; k < c.size; ++k) {
+      const auto v =
+          static_cast<std::size_t>(contact.vertices[static_cast<std::size_t>(k)]);
+      c.vertex[k] = v;
+      x[k] = before_[v] + contact.toc_lo * (after_[v] - before_[v]);
+    }
+    const auto setEdge = [&](int k, double sign) {
+      const double t = along(contact.pos, x[k], x[k + 1]);
+      c.weight[k] = sign * (1 - t);
+      c.weight[k + 1] = sign * t;
+    };
+    c.weight[0] = 1;
+    switch (contact.kind) {
+      case Kind::kVertexFace: {
+        const fcl::Vector3d n = (x[2] - x[1]).cross(x[3] - x[1]);
+        double sum = 0;
+        for (int k = 0; k < 3; ++k) {
+          const fcl::Vector3d &p = x[1 + (k + 1) % 3], &q = x[1 + (k + 2) % 3];
+          c.weight[k + 1] = std::max(0., (q - p).cross(contact.pos - p).dot(n));
+          sum += c.weight[k + 1];
+        }
+        for (int k = 1; k < 4; ++k) c.weight[k] = sum > 0 ? -c.weight[k] / sum : -1 / 3.;
+        break;
+      }
+      case Kind::kEdgeEdge:
+        setEdge(0, 1);
+        setEdge(2, -1);
+        break;
+      case Kind::kVertexEdge:
+        setEdge(1, -1);
+        break;
+      default:  // two vertices
+        c.weight[1] = -1;
+    }
+    const fcl::Vector3d begin = between(c, before_);
+    c.direction =
+        contact.normal.squaredNorm() > 0 ? fcl::Vector3d(-contact.normal) : begin;
+    if (!(c.direction.norm() > 0)) return;
+    c.direction.normalize();
+    // A pair that is nearer than it should be is pushed apart a little in each step.
+    const double wanted = options_.min_distance + options_.margin;
+    c.gap = std::min(wanted, std::max(0., c.direction.dot(begin)) + .01 * wanted);
+    constraints_.push_back(c);
+  }
+
+  static fcl::Vector3d between(const Constraint& c, const Positions& positions) {
+    fcl::Vector3d sum = fcl::Vector3d::Zero();
+    for (int k = 0; k < c.size; ++k) sum += c.weight[k] * positions[c.vertex[k]];
+    return sum;
+  }
+
+  /// Restores the gap, and takes away sliding as far as friction allows.
+  void project(const Constraint& c) {
+    const fcl::Vector3d now = between(c, after_);
+    const double missing = c.gap - c.direction.dot(now);
+    if (!(missing > 0)) return;
+    double mobility = 0;
+    for (int k = 0; k < c.size; ++k)
+      mobility += c.weight[k] * c.weight[k] * inverse_masses_[c.vertex[k]];
+    if (mobility == 0) return;
+    fcl::Vector3d change = missing * c.direction, slide = now - between(c, before_);
+    slide -= c.direction.dot(slide) * c.direction;
+    const double sliding = slide.norm();
+    if (sliding > 0)
+      change -= std::min(1., options_.friction * missing / sliding) * slide;
+    for (int k = 0; k < c.size; ++k)
+      after_[c.vertex[k]] +=
+          (c.weight[k] * inverse_masses_[c.vertex[k]] / mobility) * change;
+  }
+
+  std::size_t zoneOf(std::size_t vertex) {
+    while (zone_[vertex] != vertex) vertex = zone_[vertex] = zone_[zone_[vertex]];
+    return vertex;
+  }
+
+  /// @return whether they were two zones
+  bool join(std::size_t v, std::size_t w) {
+    v = zoneOf(v);
+    w = zoneOf(w);
+    zone_[std::max(v, w)] = std::min(v, w);
+    is_still_[std::min(v, w)] |= is_still_[std::max(v, w)];
+    return v != w;
+  }
+
+  bool isOneZone(const fcl::ContinuousContactd& contact) {
+    for (int k = 1; k < contact.numVertices(); ++k)
+      if (zoneOf(vertexOf(contact, k)) != zoneOf(vertexOf(contact, 0))) return false;
+    return true;
+  }
+
+  void moveZones() {
+    const Positions free = after_;
+    zone_.resize(before_.size());
+    std::iota(zone_.begin(), zone_.end(), std::size_t{0});
+    is_still_.assign(before_.size(), 0);
+    // Each part of an obstacle that edges join is a zone from the beginning: it keeps its
+    // shape.
+    for (int i = 0; i < model_.num_tris; ++i) {
+      const fcl::Triangle& t = model_.tri_indices[i];
+      for (int k = 0; k < 3; ++k) {
+        const std::size_t v = t[k], w = t[(k + 1) % 3];
+        if (inverse_masses_[v] == 0 && inverse_masses_[w] == 0) join(v, w);
+      }
+    }
+    for (std::size_t i = 0; i < model_.numFreeEdges(); ++i) {
+      const fcl::FreeEdge& edge = model_.freeEdge(i);
+      if (inverse_masses_[edge[0]] == 0 && inverse_masses_[edge[1]] == 0)
+        join(edge[0], edge[1]);
+    }
+    std::vector<char> has_contact(before_.size(), 0);
+    for (int round = 0; !found_.contacts.empty(); ++round) {
+      // What moved as one and has a contact nevertheless stands still.
+      bool is_new = false;
+      for (const auto& contact : found_.contacts)
+        if (isOneZone(contact) || round >= options_.zone_rounds) {
+          char& is_still = is_still_[zoneOf(vertexOf(contact, 0))];
+          is_new |= !is_still;
+          is_still = 1;
+        }
+      for (const auto& contact : found_.contacts) {
+        has_contact[vertexOf(contact, 0)] = 1;
+        for (int k = 1; k < contact.numVertices(); ++k)
+          is_new |= join(vertexOf(contact, 0), vertexOf(contact, k));
+      }
+      if (!is_new) break;
+      place(free, has_contact);
+      query();
+    }
+    report_.unresolved = found_.contacts.size();
+  }
+
+  /// Moves all zones of the rounds so far, from where the impulses led their vertices.
+  void place(const Positions& free, std::vector<char>& has_contact) {
+    std::vector<std::vector<std::size_t>> members(before_.size());
+    for (std::size_t v = 0; v < before_.size(); ++v) members[zoneOf(v)].push_back(v);
+    report_.in_zones = report_.stopped = 0;
+    report_.has_stopped_obstacle = false;
+    for (std::size_t zone = 0; zone < members.size(); ++zone) {
+      bool is_zone = false;
+      for (const std::size_t v : members[zone]) is_zone |= has_contact[v] != 0;
+      if (!is_zone) continue;
+      fcl::Transform3d motion;
+      const bool moves = !is_still_[zone] && motionOf(members[zone], free, motion);
+      for (const std::size_t v : members[zone]) {
+        if (!moves)
+          after_[v] = before_[v];
+        else if (inverse_masses_[v] > 0)
+          after_[v] = motion * before_[v];
+        report_.has_stopped_obstacle |=
+            !moves && inverse_masses_[v] == 0 && free[v] != before_[v];
+      }
+      (moves ? report_.in_zones : report_.stopped) += members[zone].size();
+    }
+  }
+
+  /// The motion of a zone. @return false if its obstacles do not move as one rigid body
+  bool motionOf(const std::vector<std::size_t>& members, const Positions& free,
+                fcl::Transform3d& motion) const {
+    std::vector<std::size_t> fixed;
+    for (const std::size_t v : members)
+      if (inverse_masses_[v] == 0) fixed.push_back(v);
+    if (fixed.empty()) {
+      motion = motionOfMasses(members, free);
+      return true;
+    }
+    Eigen::Matrix3Xd from(3, fixed.size()), to(3, fixed.size());
+    for (std::size_t i = 0; i < fixed.size(); ++i) {
+      from.col(static_cast<Eigen::Index>(i)) = before_[fixed[i]];
+      to.col(static_cast<Eigen::Index>(i)) = free[fixed[i]];
+    }
+    motion = fcl::Transform3d::Identity();
+    motion.translation() = to.col(0) - from.col(0);
+    const double size = from.cwiseAbs().maxCoeff() + to.cwiseAbs().maxCoeff();
+    // Half a unit in the last place of a float is 6e-8. The next query checks the motion.
+    const double most = (options_.rounds_to_float ? 1e-6 : 1e-12) * size;
+    const auto error = [&] { return (motion * from - to).cwiseAbs().maxCoeff(); };
+    if (error() <= most) return true;
+    // Points on a line do not tell how far it turns about itself.
+    const Eigen::Matrix3Xd centered = from.colwise() - from.rowwise().mean();
+    const Eigen::Matrix3d spread = centered * centered.transpose();
+    const Eigen::Vector3d extents =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues();
+    if (!(extents[1] > 1e-6 * extents[2])) return false;
+    motion.matrix() = Eigen::umeyama(from, to, false);
+    return error() <= most;
+  }
+
+  /// The rigid motion with the linear and angular momentum of the vertices.
+  fcl::Transform3d motionOfMasses(const std::vector<std::size_t>& members,
+                                  const Positions& free) const {
+    double mass = 0;
+    fcl::Vector3d center = fcl::Vector3d::Zero(), way = center, momentum = center;
+    for (const std::size_t v : members) {
+      const double m = 1 / inverse_masses_[v];
+      mass += m;
+      center += m * before_[v];
+      way += m * (free[v] - before_[v]);
+    }
+    center /= mass;
+    way /= mass;
+    fcl::Matrix3d inertia = fcl::Matrix3d::Zero();
+    for (const std::size_t v : members) {
+      const double m = 1 / inverse_masses_[v];
+      const fcl::Vector3d r = before_[v] - center;
+      momentum += m * r.cross(free[v] - before_[v]);
+      inertia += m * (r.squaredNorm() * fcl::Matrix3d::Identity() - r * r.transpose());
+    }
+    const fcl::Vector3d turn = inertia.completeOrthogonalDecomposition().solve(momentum);
+    // Less than half a turn: on their straight ways the vertices keep the sides that they
+    // are on.
+    const double angle = std::min(turn.norm(), 1.5);
+    fcl::Transform3d motion = fcl::Transform3d::Identity();
+    motion.translation() = center + way;
+    if (angle > 0) motion.rotate(Eigen::AngleAxisd(angle, turn.normalized()));
+    motion.translate(-center);
+    return motion;
+  }
+
+  fcl::DeformableBVHModel<BV>& model_;
+  const Options& options_;
+  const std::vector<double>& inverse_masses_;
+  const Positions& before_;
+  Positions& after_;
+  fcl::ContinuousContactResultd found_;
+  std::vector<Constraint> constraints_;
+  std::vector<std::size_t> zone_;
+  std::vector<char> is_still_;
+  Report report_;
+};
+
+/// Changes the positions at the end of a step until there is no contact on the way from
+/// `before`, and the velocities by as much.
+/// @param model  all bodies as one mesh, built; its motion is set here
+/// @param inverse_masses  of the vertices; 0: an obstacle, which moves as proposed
+/// @param time  of the step, in the unit of the velocities
+/// @throws std::invalid_argument for numbers that do not fit, std::runtime_error for
+/// coordinates that the model refuses; positions and velocities are then as before
+template <typename BV>
+Report respond(fcl::DeformableBVHModel<BV>& model, const Options& options,
+               const std::vector<double>& inverse_masses, const Positions& before,
+               double time, Positions& after, Positions& velocities) {
+  if (!(time > 0)) throw std::invalid_argument("The time of a step must be above 0");
+  if (velocities.size() != after.size())
+    throw std::invalid_argument("Velocities: one for each vertex");
+  Positions accepted = after;
+  const Report report = Step<BV>(model, options, inverse_masses, before, accepted).run();
+  if (report.initially_crossing) return report;
+  for (std::size_t v = 0; v < after.size(); ++v)
+    if (inverse_masses[v] > 0) velocities[v] += (accepted[v] - after[v]) / time;
+  after = std::move(accepted);
+  return report;
+}
+
+}  // namespace contact_response
+
+#endif
