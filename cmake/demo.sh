@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs missing packages (Debian), builds in Release and runs the demo: about 6 minutes on
+# Installs missing packages (Debian), builds in Release and runs the demo: about 5 minutes on
 # two cores. The demo writes to build/demo. Options are passed to it; --help lists them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 source cmake/dependencies.sh
 
 fcl_ccd_install_dependencies build
-echo "== Building library and demo (about five minutes on two cores the first time)"
+echo "== Building library and demo (about four minutes on two cores the first time)"
 cmake --preset release
 cmake --build --preset release --target fcl_ccd_demo
 echo "== Demo (half a minute)"
