@@ -41,11 +41,13 @@ using Positions = std::vector<fcl::Vector3d>;
 
 struct Options {
   /// The distance that impulses leave between two features, above min_distance, in the
-  /// unit of the coordinates. Above 0: features that touch at the beginning of a step
-  /// cannot be parted.
+  /// unit of the coordinates. It must be above 0, because features that touch at the
+  /// beginning of a step cannot be parted.
   double margin;
   /// The distance at which features are in contact. 0: where they touch. Above 0, pairs
-  /// that are nearer than that at the beginning of the step may not come nearer.
+  /// that are nearer than that at the beginning of the step may not come nearer, and
+  /// zones do not turn: on straight ways a turn brings parts nearer to each other for a
+  /// while.
   double min_distance{0};
   /// Coulomb's coefficient.
   double friction{.3};
@@ -56,7 +58,7 @@ struct Options {
   /// Rounds with zones that move, before zones stand still.
   int zone_rounds{20};
   /// Whether the engine keeps positions in float: the motion that is found free is that
-  /// of rounded positions.
+  /// of rounded positions. Those before the step must be floats.
   bool rounds_to_float{false};
   /// Threads of the queries; the answer does not depend on it.
   int num_threads{1};
@@ -74,8 +76,8 @@ struct Report {
   /// The state before the step had an edge that passes through a triangle: nothing was
   /// changed.
   bool initially_crossing{false};
-  /// Contacts of the motion that is returned: of features that touch at the beginning,
-  /// else 0.
+  /// Contacts of the motion that is returned. They are left only of features that touch
+  /// at the beginning, and where nothing was changed.
   std::size_t unresolved{0};
 };
 
@@ -83,8 +85,8 @@ struct Report {
 inline fcl::Vector3d roundedToFloat(const fcl::Vector3d& p) {
   fcl::Vector3d out;
   for (int k = 0; k < 3; ++k) {
-    const volatile float x =
-        static_cast<float>(p[k]);  // gcc 12 leaves out the conversion
+    // volatile: gcc 12 leaves out conversions to float and back.
+    const volatile float x = static_cast<float>(p[k]);
     out[k] = static_cast<double>(x);
   }
   return out;
@@ -181,8 +183,7 @@ class Step {
     c.size = contact.numVertices();
     fcl::Vector3d x[4];
     for (int k = 0; k < c.size; ++k) {
-      const auto v =
-          static_cast<std::size_t>(contact.vertices[static_cast<std::size_t>(k)]);
+      const std::size_t v = vertexOf(contact, k);
       c.vertex[k] = v;
       x[k] = before_[v] + contact.toc_lo * (after_[v] - before_[v]);
     }
@@ -312,7 +313,7 @@ class Step {
   }
 
   /// Moves all zones of the rounds so far, from where the impulses led their vertices.
-  void place(const Positions& free, std::vector<char>& has_contact) {
+  void place(const Positions& free, const std::vector<char>& has_contact) {
     std::vector<std::vector<std::size_t>> members(before_.size());
     for (std::size_t v = 0; v < before_.size(); ++v) members[zoneOf(v)].push_back(v);
     report_.in_zones = report_.stopped = 0;
@@ -367,7 +368,8 @@ class Step {
     return error() <= most;
   }
 
-  /// The rigid motion with the linear and angular momentum of the vertices.
+  /// The rigid motion with the linear and angular momentum of the vertices; with
+  /// min_distance with the linear one alone.
   fcl::Transform3d motionOfMasses(const std::vector<std::size_t>& members,
                                   const Positions& free) const {
     double mass = 0;
@@ -388,9 +390,9 @@ class Step {
       inertia += m * (r.squaredNorm() * fcl::Matrix3d::Identity() - r * r.transpose());
     }
     const fcl::Vector3d turn = inertia.completeOrthogonalDecomposition().solve(momentum);
-    // Less than half a turn: on their straight ways the vertices keep the sides that they
-    // are on.
-    const double angle = std::min(turn.norm(), 1.5);
+    // Less than half a turn: on straight ways the vertices keep the sides that they are
+    // on.
+    const double angle = options_.min_distance > 0 ? 0 : std::min(turn.norm(), 1.5);
     fcl::Transform3d motion = fcl::Transform3d::Identity();
     motion.translation() = center + way;
     if (angle > 0) motion.rotate(Eigen::AngleAxisd(angle, turn.normalized()));

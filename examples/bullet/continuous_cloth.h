@@ -52,7 +52,7 @@ class ContinuousCloth {
   }
 
   /// One step of the world, without steps inside of it. `obstacles`: the positions of all
-  /// vertices of obstacles at its end, which are floats; empty: they stay.
+  /// vertices of obstacles at its end, rounded to float; empty: they stay.
   /// @throws std::invalid_argument if that is another number of vertices
   contact_response::Report step(btSoftRigidDynamicsWorld& world, float time,
                                 const Positions& obstacles = {}) {
@@ -69,7 +69,8 @@ class ContinuousCloth {
     const std::size_t count = next.size();
     next.insert(next.end(), positions_.begin() + static_cast<std::ptrdiff_t>(count),
                 positions_.end());
-    for (std::size_t i = 0; i < obstacles.size(); ++i) next[count + i] = obstacles[i];
+    for (std::size_t i = 0; i < obstacles.size(); ++i)
+      next[count + i] = contact_response::roundedToFloat(obstacles[i]);
     const contact_response::Report report =
         contact_response::respond(model_, options_, inverse_masses_, positions_,
                                   static_cast<double>(time), next, velocities);

@@ -220,6 +220,26 @@ TEST(FCL_CONTACT_RESPONSE, zonesTurn) {
   EXPECT_LE((scene.angularMomentum() - angular).norm(), .002 * angular.norm());
 }
 
+// Pairs that are within the distance at the beginning may not come nearer, not even for a
+// while: zones of such pairs go straight.
+TEST(FCL_CONTACT_RESPONSE, zonesOfClosePairsMove) {
+  Random random(8);
+  std::size_t in_zones = 0, stopped = 0;
+  for (int i = 0; i < rounds(40); ++i) {
+    SCOPED_TRACE(i);
+    const double min_distance = .5;  // more than an edge, and than the next layer
+    Scene scene = layers(random, 2, false, false);
+    const V before = scene.momentum();
+    const Report report = scene.respond(optionsOf(min_distance, 0));
+    ASSERT_TRUE(scene.found(min_distance).contacts.empty());
+    EXPECT_LE((scene.momentum() - before).norm(), 1e-12 * (1 + before.norm()));
+    in_zones += report.in_zones;
+    stopped += report.stopped;
+  }
+  EXPECT_GT(in_zones, rounds(1000U));
+  EXPECT_EQ(stopped, 0U);
+}
+
 // What an obstacle pushes moves with it, without another round of impulses.
 TEST(FCL_CONTACT_RESPONSE, obstaclesKeepTheirWay) {
   Random random(4);
