@@ -29,3 +29,13 @@ function(fcl_ccd_compile_options target)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
 endfunction()
+
+# With FCL_CCD_JOIN_SOURCES, the compiler reads several files of a target as one.
+function(fcl_ccd_join_sources target)
+  if(NOT FCL_CCD_JOIN_SOURCES)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 10)
+  # gcc takes each file for a header, whose nameless namespaces would be a fault.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endfunction()

@@ -40,8 +40,8 @@ py::dict fieldsOf(const fcl::ContinuousDistanceResultd& found) {
 
 namespace {
 
-DistanceRequest makeRequest(const Request& contacts, double abs_err, double rel_err,
-                            double max_distance) {
+DistanceRequest makeDistanceRequest(const Request& contacts, double abs_err,
+                                    double rel_err, double max_distance) {
   return {contacts, abs_err, rel_err, max_distance};
 }
 
@@ -64,7 +64,7 @@ py::dict distanceOfPair(const Geometry& o1, const Motion& motion1, const Geometr
 
 void bindDistances(py::module_& module) {
   Class<DistanceRequest>(module, "DistanceRequest")
-      .def(py::init(&makeRequest), py::arg("contacts"), py::arg("abs_err"),
+      .def(py::init(&makeDistanceRequest), py::arg("contacts"), py::arg("abs_err"),
            py::arg("rel_err"), py::arg("max_distance"));
   module.def("distance", &distanceOfPair);
 }

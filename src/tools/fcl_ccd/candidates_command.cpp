@@ -23,7 +23,7 @@ void appendTriangle(const SceneCandidate& candidate, std::string& line) {
   line.append(triangleName(candidate, i));
 }
 
-constexpr CsvColumn<SceneCandidate> kColumns[] = {
+constexpr CsvColumn<SceneCandidate> kCandidateColumns[] = {
     {"kind", [](const SceneCandidate& candidate,
                 std::string& line) { line.append(nameOf(candidate.kind)); }},
     {"i0", appendVertex<0>},
@@ -54,7 +54,7 @@ std::string summaryOf(const std::vector<SceneCandidate>& candidates, bool at_dis
 
 }  // namespace
 
-std::vector<std::string> candidateColumns() { return namesOf(kColumns); }
+std::vector<std::string> candidateColumns() { return namesOf(kCandidateColumns); }
 
 void candidatesCommand(const CandidatesOptions& options) {
   OneStep step(options.step);
@@ -65,11 +65,11 @@ void candidatesCommand(const CandidatesOptions& options) {
 
   const ColumnNumbers columns =
       options.columns.value_or(ColumnNumbers{0, 1, 2, 3, 4, 5, 6});
-  file->write(csvHead(kColumns, columns));
+  file->write(csvHead(kCandidateColumns, columns));
   constexpr std::size_t kBlock = 1 << 20;
   std::string lines;
   for (const SceneCandidate& candidate : candidates) {
-    appendCsvLine(kColumns, columns, candidate, lines);
+    appendCsvLine(kCandidateColumns, columns, candidate, lines);
     if (lines.size() < kBlock) continue;
     file->write(lines);
     lines.clear();

@@ -5,19 +5,19 @@
 #define FCL_CCD_COMPARISON_H
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "compare_command.h"
+#include "json.h"
 
 namespace fcl_ccd {
 
 /// @brief The figures of a comparison, in one row.
 struct ComparisonRow {
   std::vector<std::pair<std::string, std::string>> columns;  ///< name and figure
-  nlohmann::ordered_json json;
+  Json json;
 };
 
 /// @brief A comparison of the library's answers with the truth of some files.

@@ -35,7 +35,7 @@ void appendNormal(const ContactRow& row, std::string& line) {
   line.append(numberText(row.contact.normal[k]));
 }
 
-constexpr CsvColumn<ContactRow> kColumns[] = {
+constexpr CsvColumn<ContactRow> kContactColumns[] = {
     {"step", [](const ContactRow& row, std::string& line) { line.append(row.step); }},
     {"kind", [](const ContactRow& row,
                 std::string& line) { line.append(nameOf(row.contact.kind)); }},
@@ -59,7 +59,7 @@ constexpr CsvColumn<ContactRow> kColumns[] = {
     {"i4", appendVertex<4>}};
 constexpr std::size_t kNumAlways = 8;
 constexpr std::size_t kFirstOfPoints = 10, kLastOfPoints = 15;
-constexpr std::size_t kNumColumns = sizeof kColumns / sizeof *kColumns;
+constexpr std::size_t kNumColumns = sizeof kContactColumns / sizeof *kContactColumns;
 
 /// Columns that have a name together, and those that they are.
 struct ColumnGroup {
@@ -69,9 +69,9 @@ struct ColumnGroup {
 const ColumnGroup kGroups[] = {
     {"triangles", {8, 9}}, {"position", {10, 11, 12}}, {"normal", {13, 14, 15}}};
 
-/// kColumns and kGroups.
+/// kContactColumns and kGroups.
 std::vector<std::string> knownNames() {
-  std::vector<std::string> names = namesOf(kColumns);
+  std::vector<std::string> names = namesOf(kContactColumns);
   for (const ColumnGroup& group : kGroups) names.emplace_back(group.name);
   return names;
 }
@@ -115,14 +115,14 @@ bool ContactColumns::needPoints() const {
 }
 
 std::string contactsHead(const ContactColumns& columns) {
-  return csvHead(kColumns, columns.numbers());
+  return csvHead(kContactColumns, columns.numbers());
 }
 
 std::string contactLines(const StepReport& report, const ContactColumns& columns) {
   std::string lines;
   const std::string step = std::to_string(report.number);
   for (const SceneContact& contact : report.result.contacts)
-    appendCsvLine(kColumns, columns.numbers(), ContactRow{step, contact}, lines);
+    appendCsvLine(kContactColumns, columns.numbers(), ContactRow{step, contact}, lines);
   return lines;
 }
 

@@ -13,7 +13,6 @@ namespace fcl_ccd {
 namespace {
 
 using Kind = fcl::ContinuousContactKind;
-using Json = nlohmann::ordered_json;
 using fcl::PrimitiveKind;
 
 struct KindNames {

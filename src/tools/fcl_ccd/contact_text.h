@@ -4,10 +4,10 @@
 #ifndef FCL_CCD_CONTACT_TEXT_H
 #define FCL_CCD_CONTACT_TEXT_H
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "json.h"
 #include "scene.h"
 
 namespace fcl_ccd {
@@ -49,10 +49,10 @@ std::string triangleName(const Pair& pair, std::size_t feature) {
 
 /// @brief kind, vertices, triangles, toc_lo, toc_hi, position, normal. Names of B, and of
 /// free edges and points, are texts; others are numbers.
-nlohmann::ordered_json toJson(const SceneContact& contact);
+Json toJson(const SceneContact& contact);
 
 /// @brief The contact of which toJson() made this.
-SceneContact contactOf(const nlohmann::ordered_json& json);
+SceneContact contactOf(const Json& json);
 
 /// @brief The contact that a run names as its first one.
 struct FirstContact {

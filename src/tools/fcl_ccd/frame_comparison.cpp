@@ -11,6 +11,7 @@
 #include "comparison.h"
 #include "contact_text.h"
 #include "counted.h"
+#include "json.h"
 #include "number_text.h"
 #include "one_step.h"
 #include "query_files.h"
@@ -20,7 +21,6 @@ namespace fcl_ccd {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 using Kind = fcl::ContinuousContactKind;
 
 /// The lists of one kind.

@@ -11,8 +11,6 @@
 namespace fcl_ccd {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::string element(const std::string& id, const Json& json, const std::string& bytes) {
   return "<script type=\"application/json\" class=\"" + id + "\">" + scriptText(json) +
          "</script>\n<script type=\"text/plain\" class=\"" + id + "-block\">" +

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <string>
 
+#include "json.h"
 #include "page_block.h"
 #include "run_report.h"
 #include "scene.h"
@@ -34,7 +35,7 @@ std::string pageStep(const StepReport& report, const SceneTriangles& triangles,
                      bool is_key);
 
 /// @brief JSON that may stand in a script element.
-std::string scriptText(const nlohmann::ordered_json& json);
+std::string scriptText(const Json& json);
 
 }  // namespace fcl_ccd
 

@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <cstdio>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "contact_text.h"
+#include "json.h"
 #include "number_text.h"
 #include "output_set.h"
 #include "query_run.h"
@@ -18,7 +18,6 @@ namespace {
 
 using fcl::detail::deformable::Answer;
 using fcl::detail::deformable::ElementaryResult;
-using Json = nlohmann::ordered_json;
 
 std::vector<ElementaryResult> runQueries(const QuerySet& set,
                                          const QueriesOptions& options, double& seconds) {

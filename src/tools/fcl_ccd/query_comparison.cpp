@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "comparison.h"
+#include "json.h"
 #include "number_text.h"
 #include "query_run.h"
 #include "run_report.h"
@@ -20,7 +21,6 @@ namespace {
 
 using fcl::detail::deformable::Answer;
 using fcl::detail::deformable::ElementaryResult;
-using Json = nlohmann::ordered_json;
 
 /// The results of all queries, and the shortest time of each, in seconds.
 struct TimedResults {

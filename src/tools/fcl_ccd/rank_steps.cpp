@@ -7,12 +7,11 @@
 
 #include "counted.h"
 #include "fcl/ccd_version.h"
+#include "json.h"
 #include "run_command.h"
 
 namespace fcl_ccd {
 namespace {
-
-using Json = nlohmann::json;
 
 /// How long a rank waits for a step of its own before it looks for signals and messages.
 constexpr std::chrono::milliseconds kGlance(20);

@@ -2,14 +2,13 @@
 #include "report_page.h"
 
 #include "fcl/ccd_version.h"
+#include "json.h"
 #include "page_block.h"
 #include "page_parts.h"
 #include "page_step.h"
 
 namespace fcl_ccd {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string script(const char* text) {
   return std::string("<script>\n") + text + "</script>\n";

@@ -10,12 +10,11 @@
 #include <string_view>
 
 #include "counted.h"
+#include "json.h"
 #include "text_scan.h"
 
 namespace fcl_ccd {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// @brief Reads complete lines of a file, and tells where they end.
 class LineFile {

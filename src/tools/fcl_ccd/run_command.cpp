@@ -20,6 +20,7 @@
 #include "fcl/ccd_version.h"
 #include "frame_watch.h"
 #include "in_order.h"
+#include "json.h"
 #include "output_set.h"
 #include "own_steps.h"
 #include "progress_line.h"
@@ -33,8 +34,6 @@
 
 namespace fcl_ccd {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// @brief The number of jobs and of threads.
 Parallelism parallelismOf(const RunOptions& options, bool is_alone,

@@ -3,12 +3,9 @@
 
 #include <utility>
 
+#include "json.h"
+
 namespace fcl_ccd {
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-}  // namespace
 
 RunOutputs::RunOutputs(const RunOptions& options, const OutputSet& reserved,
                        const RunSummary& summary)

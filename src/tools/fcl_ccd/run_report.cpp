@@ -15,8 +15,6 @@ namespace fcl_ccd {
 namespace {
 
 using Kind = fcl::ContinuousContactKind;
-using Json = nlohmann::ordered_json;
-
 constexpr Colour kGrey{200, 200, 200};
 constexpr Colour kOrange{255, 140, 0};
 constexpr Colour kRed{220, 20, 20};

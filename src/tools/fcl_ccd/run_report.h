@@ -3,12 +3,12 @@
 #define FCL_CCD_RUN_REPORT_H
 
 #include <cstddef>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "contact_text.h"
+#include "json.h"
 #include "mesh_io.h"
 #include "scene.h"
 
@@ -63,16 +63,16 @@ std::string stepLine(const StepReport& report);
 
 /// @brief Names of files as JSON has them. A byte that is not part of valid UTF-8 becomes
 /// U+FFFD, since JSON is UTF-8.
-nlohmann::ordered_json namesInJson(const std::vector<std::string>& files);
+Json namesInJson(const std::vector<std::string>& files);
 
 /// @brief The content of a line of the list of steps.
-RunSummary summaryOf(const nlohmann::ordered_json& step_line);
+RunSummary summaryOf(const Json& step_line);
 
 /// @brief The summary without times: the end of the list of steps.
-nlohmann::ordered_json toJson(const RunSummary& summary);
+Json toJson(const RunSummary& summary);
 
 /// @brief One entry of "steps" in the JSON report.
-nlohmann::ordered_json toJson(const StepReport& report);
+Json toJson(const StepReport& report);
 
 /// @brief The scene as one mesh at a time of the step, with B's vertices after A's.
 /// Vertices of contacts up to this time have a colour: vertex-face red, edge-edge orange,

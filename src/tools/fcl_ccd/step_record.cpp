@@ -3,13 +3,12 @@
 
 #include <cstring>
 
+#include "json.h"
 #include "run_command.h"
 #include "stop_signal.h"
 
 namespace fcl_ccd {
 namespace {
-
-using Json = nlohmann::json;
 
 Json encode(const RunSummary& summary) {
   Json first = nullptr;

@@ -3,19 +3,17 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <system_error>
 
 #include "file_bytes.h"
+#include "json.h"
 #include "text_scan.h"
 
 namespace fcl_ccd {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
-
 /// Calls take() for each entry of the array of a file.
 template <typename Take>
 void readArray(const std::string& path, Take take) {
