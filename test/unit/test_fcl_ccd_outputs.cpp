@@ -262,7 +262,9 @@ Mesh longNumbers(double drop) {
 // Wherever the last frame is cut, the run does the steps before it, or takes it as whole
 // if only an end of line is missing.
 TEST_F(CcdOutputs, AHalfWrittenLastFrameLeavesTheStepsBefore) {
-  for (const Format& format : formats()) {
+  // With the sanitizer, which starts slowly, every third format.
+  for (std::size_t at = 0; at < formats().size(); at += kHasAddressSanitizer ? 3 : 1) {
+    const Format& format = formats()[at];
     fs::remove_all(path("f"));
     fs::create_directory(path("f"));
     const auto frame = [&](int i) {
@@ -275,8 +277,7 @@ TEST_F(CcdOutputs, AHalfWrittenLastFrameLeavesTheStepsBefore) {
     const std::string steps = two.second.substr(0, two.second.find("{\"summary"));
     const std::string text = readText(path(frame(2)));
     std::size_t num_whole = 0;
-    // Every cut of the last number; with the sanitizer, which starts slowly, every
-    // eighth.
+    // Every cut of the last number, or every eighth.
     const std::size_t step = kHasAddressSanitizer ? 8 : 1;
     const bool is_text = text.back() == '\n';
     const std::size_t fine = text.size() - (is_text ? 14 : 2);

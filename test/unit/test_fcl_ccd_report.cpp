@@ -20,6 +20,7 @@
 #include "csv_rows.h"
 #include "mesh_files.h"
 #include "render.h"
+#include "sanitizer.h"
 
 namespace {
 
@@ -239,6 +240,7 @@ TEST_F(CcdReport, PageHasStepsAndContactsWithAllDigits) {
 
 // A page that is opened from the disk has nothing else.
 TEST_F(CcdReport, PageLoadsNothing) {
+  if (kHasAddressSanitizer) GTEST_SKIP() << "Each picture takes long";
   writeTip();
   outputOf("run tip0.obj tip1.obj --report r.html");
   const std::string page = readText(path("r.html"));
@@ -252,6 +254,7 @@ TEST_F(CcdReport, PageLoadsNothing) {
 }
 
 TEST_F(CcdReport, FilesWithMarkupInTheirNamesStayText) {
+  if (kHasAddressSanitizer) GTEST_SKIP() << "Each picture takes long";
   fs::create_directory(path("<script>"));
   writeText(path("<script>/a0.obj"), toObj(floorAndTip(0)));
   writeText(path("<script>/a1.obj"), toObj(floorAndTip(2)));
@@ -261,6 +264,7 @@ TEST_F(CcdReport, FilesWithMarkupInTheirNamesStayText) {
 }
 
 TEST_F(CcdReport, FolderHasWhatBelongsToThePage) {
+  if (kHasAddressSanitizer) GTEST_SKIP() << "Each picture takes long";
   writeFrames(6);
   outputOf("run f --report out");
   std::set<std::string> names;

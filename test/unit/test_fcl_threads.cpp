@@ -755,7 +755,7 @@ TEST(FCL_THREADS, oneThreadMakesNoTasks) {
 }
 
 TEST(FCL_THREADS, arenaOfOneIsRespected) {
-  for (const int threads : {0, 1, 2, 4}) {
+  for (const int threads : numbersOfThreads({0, 1, 2, 4})) {
     EXPECT_EQ(threadsOfQuery(1, threads), justThisOne()) << threads;
     EXPECT_EQ(threadsOfModels(1, threads), justThisOne()) << threads;
   }
