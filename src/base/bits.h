@@ -4,6 +4,7 @@
 #ifndef FCL_CCD_BASE_BITS_H
 #define FCL_CCD_BASE_BITS_H
 
+#include <cassert>
 #include <cstdint>
 
 namespace fcl {
@@ -13,21 +14,32 @@ namespace deformable {
 #if defined(__GNUC__) || defined(__clang__)
 
 /// @brief The place of the lowest bit that is set. @pre bits != 0
-inline int lowestBit(std::uint32_t bits) { return __builtin_ctz(bits); }
-inline int lowestBit(std::uint64_t bits) { return __builtin_ctzll(bits); }
+inline int lowestBit(std::uint32_t bits) {
+  assert(bits != 0);
+  return __builtin_ctz(bits);
+}
+inline int lowestBit(std::uint64_t bits) {
+  assert(bits != 0);
+  return __builtin_ctzll(bits);
+}
 /// @brief The number of zeros above the highest bit that is set. @pre bits != 0
-inline int leadingZeros(std::uint64_t bits) { return __builtin_clzll(bits); }
+inline int leadingZeros(std::uint64_t bits) {
+  assert(bits != 0);
+  return __builtin_clzll(bits);
+}
 inline int countBits(std::uint32_t bits) { return __builtin_popcount(bits); }
 
 #else
 
 inline int lowestBit(std::uint64_t bits) {
+  assert(bits != 0);
   int place = 0;
   for (; (bits & 1) == 0; bits >>= 1) ++place;
   return place;
 }
 inline int lowestBit(std::uint32_t bits) { return lowestBit(std::uint64_t{bits}); }
 inline int leadingZeros(std::uint64_t bits) {
+  assert(bits != 0);
   int zeros = 0;
   for (; (bits >> 63) == 0; bits <<= 1) ++zeros;
   return zeros;

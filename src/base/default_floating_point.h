@@ -26,6 +26,9 @@ inline void setFloatingPointMode(FloatingPointMode mode) {
 }
 inline void setDefaultFloatingPointMode() { setFloatingPointMode(0x1f80); }
 
+/// @brief Whether the thread rounds to nearest and keeps subnormals.
+inline bool isDefaultFloatingPointMode() { return (_mm_getcsr() & 0xe040U) == 0; }
+
 #else
 
 using FloatingPointMode = std::fenv_t;
@@ -37,6 +40,9 @@ inline FloatingPointMode floatingPointMode() {
 }
 inline void setFloatingPointMode(const FloatingPointMode& mode) { std::fesetenv(&mode); }
 inline void setDefaultFloatingPointMode() { std::fesetenv(FE_DFL_ENV); }
+
+/// @brief Whether the thread rounds to nearest.
+inline bool isDefaultFloatingPointMode() { return std::fegetround() == FE_TONEAREST; }
 
 #endif
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/parallel.h"
 
+#include <cassert>
+
 #if defined(FCL_CCD_USE_TBB)
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
-#include <cassert>
 
 #include <algorithm>
 #include <exception>
@@ -20,7 +21,10 @@ namespace {
 
 void forEach(std::size_t count, const std::function<void(std::size_t)>& visit) {
   const DefaultFloatingPoint mode;
-  for (std::size_t i = 0; i < count; ++i) visit(i);
+  for (std::size_t i = 0; i < count; ++i) {
+    visit(i);
+    assert(isDefaultFloatingPointMode());
+  }
 }
 
 }  // namespace
@@ -31,6 +35,7 @@ int numThreads(int num_threads) {
   assert(num_threads >= 0);
   if (num_threads == 1) return 1;
   const int available = tbb::this_task_arena::max_concurrency();
+  assert(available >= 1);
   return num_threads > 0 ? std::min(num_threads, available) : available;
 }
 
@@ -47,6 +52,7 @@ void parallelFor(std::size_t count, int num_threads,
           const DefaultFloatingPoint mode;
           try {
             visit(i);
+            assert(isDefaultFloatingPointMode());
           } catch (...) {
             errors[i] = std::current_exception();
           }
@@ -71,7 +77,10 @@ void inArena(int num_threads, const std::function<void()>& work) {
 
 #else
 
-int numThreads(int) { return 1; }
+int numThreads([[maybe_unused]] int num_threads) {
+  assert(num_threads >= 0);
+  return 1;
+}
 
 void inArena(int, const std::function<void()>& work) { work(); }
 

@@ -52,7 +52,10 @@ class SlotCache {
     return put(slot, key);
   }
 
-  void forget(std::size_t slot) { keys_[slot] = none_; }
+  void forget(std::size_t slot) {
+    assert(slot < kSlots);
+    keys_[slot] = none_;
+  }
   void forgetAll() { std::fill(keys_, keys_ + kSlots, none_); }
 
  private:
@@ -63,6 +66,7 @@ class SlotCache {
 
 /// @brief A slot of 2^bits for a time and a number.
 inline std::size_t slotOf(double t, std::int32_t number, int bits) {
+  assert(0 < bits && bits < 64);
   std::uint64_t key;
   std::memcpy(&key, &t, sizeof(key));
   key += static_cast<std::uint64_t>(number);
