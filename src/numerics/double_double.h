@@ -9,6 +9,7 @@
 #ifndef FCL_CCD_NUMERICS_DOUBLE_DOUBLE_H
 #define FCL_CCD_NUMERICS_DOUBLE_DOUBLE_H
 
+#include <cassert>
 #include <cmath>
 
 namespace fcl {
@@ -19,16 +20,23 @@ namespace deformable {
 struct DoubleDouble {
   double hi, lo;
 
+  /// @brief Whether hi is the double nearest to the sum, unless something overflowed.
+  bool isNormalized() const { return hi + lo == hi || !std::isfinite(lo); }
+
   /// @brief p - q, exact (Knuth's TwoSum).
   static DoubleDouble difference(double p, double q) {
     const double d = p - q;
     const double q_virtual = p - d, p_virtual = d + q_virtual;
-    return {d, (p - p_virtual) + (q_virtual - q)};
+    const DoubleDouble out{d, (p - p_virtual) + (q_virtual - q)};
+    assert(out.isNormalized());
+    return out;
   }
   /// @brief s + rest for |s| >= |rest|, exact.
   static DoubleDouble normalized(double s, double rest) {
     const double hi = s + rest;
-    return {hi, rest - (hi - s)};
+    const DoubleDouble out{hi, rest - (hi - s)};
+    assert(out.isNormalized());
+    return out;
   }
 };
 

@@ -8,11 +8,24 @@
 #include <limits>
 
 #include "numerics/illinois.h"
+#include "numerics/integer_coordinates.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
+
+/// Whether a double >= 0 is not above k / 2^m (direction -1), or not below it (1).
+[[maybe_unused]] bool isBound(double value, const Integer& k, unsigned m, int direction) {
+  const BinaryDigits x(value);
+  // Both times 2^shift.
+  const unsigned below = x.exponent < 0 ? static_cast<unsigned>(-x.exponent) : 0,
+                 shift = std::max(below, m);
+  const Integer scaled = Integer(x.digits)
+                         << static_cast<unsigned>(static_cast<int>(shift) + x.exponent),
+                exact = k << (shift - m);
+  return direction < 0 ? scaled <= exact : scaled >= exact;
+}
 
 /// k / 2^m rounded to a double below (direction -1) or above (1), or equal.
 double toDouble(const Integer& k, unsigned m, int direction) {
@@ -26,8 +39,11 @@ double toDouble(const Integer& k, unsigned m, int direction) {
                                   static_cast<int>(drop) - static_cast<int>(m));
   // A subnormal has fewer bits, to which ldexp() rounds either way, up to the smallest
   // normal number.
-  if (value > std::numeric_limits<double>::min()) return value;
-  return direction < 0 ? std::nextafter(value, 0.) : std::nextafter(value, 1.);
+  const double bound = value > std::numeric_limits<double>::min()
+                           ? value
+                           : std::nextafter(value, direction < 0 ? 0. : 1.);
+  assert(isBound(bound, k, m, direction));
+  return bound;
 }
 
 /// a / b <= 1, rounded in the same way.
@@ -43,6 +59,7 @@ double ratioToDouble(const Integer& a, const Integer& b, int direction) {
 
 /// p divided by (2^m t - k), a root of it.
 ExactPolynomial withoutRoot(const ExactPolynomial& p, const Integer& k, unsigned m) {
+  assert(p.signAt(k, m) == 0);
   return p.quotient(ExactPolynomial{-k, Integer(1) << m}).primitive();
 }
 
@@ -69,12 +86,14 @@ ExactPolynomial operator*(const ExactPolynomial& a, const ExactPolynomial& b) {
   product.c_.resize(a.c_.size() + b.c_.size() - 1);
   for (std::size_t i = 0; i < a.c_.size(); ++i)
     for (std::size_t j = 0; j < b.c_.size(); ++j) product.c_[i + j] += a.c_[i] * b.c_[j];
+  assert(!product.c_.back().is_zero());
   return product;
 }
 
 ExactPolynomial ExactPolynomial::derivative() const {
   ExactPolynomial d;
   for (std::size_t i = 1; i < c_.size(); ++i) d.c_.push_back(c_[i] * i);
+  assert(d.degree() == std::max(degree() - 1, -1));
   return d;
 }
 
@@ -99,6 +118,7 @@ ExactPolynomial remainder(const ExactPolynomial& a, const ExactPolynomial& b) {
       rest.c_[i] *= b.c_.back();
       if (i >= shift) rest.c_[i] -= top * b.c_[i - shift];
     }
+    assert(rest.c_.back().is_zero());
     rest.trim();
   }
   return rest;
@@ -119,8 +139,10 @@ ExactPolynomial ExactPolynomial::quotient(const ExactPolynomial& divisor) const 
       rest.c_[i] *= lead;
       if (i >= shift) rest.c_[i] -= top * divisor.c_[i - shift];
     }
+    assert(rest.c_.back().is_zero());
     rest.trim();
   }
+  assert(rest.isZero());
   return q;
 }
 
@@ -152,6 +174,7 @@ int ExactPolynomial::signAtFraction(const Integer& numerator,
 
 ExactPolynomial::Coefficients ExactPolynomial::bernstein(const Integer& k,
                                                          unsigned m) const {
+  assert(!isZero());
   const std::size_t n = c_.size();
   // q(s) = 2^(m degree) p((k + s) / 2^m) by repeated synthetic division.
   Coefficients q = c_;
@@ -164,6 +187,7 @@ ExactPolynomial::Coefficients ExactPolynomial::bernstein(const Integer& k,
   for (std::size_t i = 0; i + 1 < n; ++i)
     for (std::size_t j = n - 1; j-- > i;) q[j] += q[j + 1];
   std::reverse(q.begin(), q.end());
+  assert(q.front() == valueAt(k, m) && q.back() == valueAt(k + 1, m));
   return q;
 }
 
@@ -184,6 +208,7 @@ ExactPolynomial gcd(ExactPolynomial a, ExactPolynomial b) {
     a = std::move(b);
     b = std::move(rest);
   }
+  assert(!a.isZero());
   return a.degree() > 0 ? a.primitive() : a;
 }
 
@@ -224,6 +249,7 @@ class RootSearch {
     takeDyadic(0, 0);
     takeDyadic(1, 0);
     while (!isolateAll()) continue;
+    assert(roots_.size() <= std::size_t{ExactPolynomial::kMaxDegree});
     return std::move(roots_);
   }
 
@@ -288,6 +314,8 @@ class RootSearch {
       const int changes = p_.signChanges(k, i.m + 1);
       open_.push_back({k, i.m + 1, changes, i.cuts + 1, changes == i.changes ? 8U : 1U});
     }
+    // Descartes' rule: a part never has more sign changes than the rest leaves it.
+    assert(open_.back().changes + open_[open_.size() - 2].changes <= i.changes);
   }
 
   /// Roots may lie close together at an end (frames of very different size) or at an
@@ -307,6 +335,7 @@ class RootSearch {
   bool jumpTo(const Interval& i, const Integer& k, int cuts) {
     constexpr unsigned kMaxJump = 256;
     if (p_.signChanges(k, i.m + i.jump) != i.changes) return false;
+    assert(k >> i.jump == i.k);
     open_.push_back(
         {k, i.m + i.jump, i.changes, i.cuts + cuts, std::min(2 * i.jump, kMaxJump)});
     return true;
@@ -326,11 +355,18 @@ std::vector<Root> rootsInUnitInterval(const ExactPolynomial& polynomial) {
 }
 
 double timeOf(const Integer& k, unsigned m, int clock_exponent, int direction) {
+  assert(0 <= k && k <= Integer(1) << m);
   if (clock_exponent == 0) return toDouble(k, m, direction);
   Integer before = (Integer(1) << m) - k, after = k;
   (clock_exponent > 0 ? before : after) <<=
       static_cast<unsigned>(std::abs(clock_exponent));
   return ratioToDouble(after, before + after, direction);
+}
+
+bool Root::isBetweenEnds() const {
+  return 0 <= k_ && k_ < Integer(1) << m_ && sign_below_ != 0 &&
+         polynomial_.signAt(k_, m_) == sign_below_ &&
+         polynomial_.signAt(k_ + 1, m_) == -sign_below_;
 }
 
 Integer Root::guessInside(unsigned bits) const {
@@ -344,6 +380,7 @@ Integer Root::guessInside(unsigned bits) const {
 }
 
 int Root::probe(const Integer& k, unsigned m) {
+  assert(m > m_ && k > k_ << (m - m_) && k < (k_ + 1) << (m - m_));
   const int sign = polynomial_.signAt(k, m);
   if (sign == 0) {
     k_ = k;
@@ -359,6 +396,7 @@ bool Root::narrow(unsigned bits) {
   if (bits > 1) {
     const Integer first = k_ << bits, end = (k_ + 1) << bits;
     const Integer guess = first + guessInside(bits);
+    assert(first <= guess && guess <= end);
     const Integer below = guess > first ? guess - 1 : first,
                   above = guess + 2 < end ? guess + 2 : end;
     const unsigned m = m_ + bits;
@@ -371,6 +409,7 @@ bool Root::narrow(unsigned bits) {
         if (sign == sign_below_) continue;
         k_ = k;
         m_ = m;
+        assert(isBetweenEnds());
         return true;
       }
     }
@@ -380,10 +419,12 @@ bool Root::narrow(unsigned bits) {
   if (is_dyadic_) return true;
   k_ = sign == sign_below_ ? mid : mid - 1;
   ++m_;
+  assert(isBetweenEnds());
   return bits == 1;
 }
 
 int Root::compare(const Integer& numerator, const Integer& denominator) const {
+  assert(denominator > 0);
   const Integer scaled = numerator << m_, place = k_ * denominator;
   if (is_dyadic_) return place.compare(scaled);
   if (scaled <= place) return 1;
@@ -436,6 +477,15 @@ double Root::upperBound() const {
   return toDouble(is_dyadic_ ? k_ : Integer(k_ + 1), m_, 1);
 }
 
+/// Whether a bracket in [0, 1] is no wider than that and a few units in the last place.
+[[maybe_unused]] static bool isNarrow(const std::pair<double, double>& bracket,
+                                      double width) {
+  const auto [lo, hi] = bracket;
+  return 0 <= lo && lo <= hi && hi <= 1 &&
+         hi - lo <= width + 4 * std::numeric_limits<double>::epsilon() * hi +
+                        std::numeric_limits<double>::min();
+}
+
 std::pair<double, double> Root::bracket(double width, int clock_exponent) {
   // No two doubles are closer, and 1 / width is finite.
   width = std::max(width, std::numeric_limits<double>::min());
@@ -450,7 +500,9 @@ std::pair<double, double> Root::bracket(double width, int clock_exponent) {
     if (!(excess > 1)) break;
     narrow(static_cast<unsigned>(std::min<int>(kEstimateBits, std::ilogb(excess) + 1)));
   }
-  return {lowerBound(), upperBound()};
+  const std::pair<double, double> around{lowerBound(), upperBound()};
+  assert(isNarrow(around, width));
+  return around;
 }
 
 std::pair<double, double> Root::bracketOnClock(double width, int clock_exponent) {
@@ -458,6 +510,7 @@ std::pair<double, double> Root::bracketOnClock(double width, int clock_exponent)
   for (;;) {
     const double lo = timeOf(k_, m_, clock_exponent, -1),
                  hi = timeOf(is_dyadic_ ? k_ : Integer(k_ + 1), m_, clock_exponent, 1);
+    assert(0 <= lo && lo <= hi && hi <= 1);
     constexpr double kUlps = 4 * std::numeric_limits<double>::epsilon();
     if (is_dyadic_ || hi - lo <= width || hi - lo <= kUlps * lo || m_ > kMaxBits + shift)
       return {lo, hi};

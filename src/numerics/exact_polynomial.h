@@ -98,14 +98,18 @@ ExactPolynomial gcd(ExactPolynomial a, ExactPolynomial b);
 class Root {
  public:
   /// @brief The number k / 2^m.
-  Root(Integer k, unsigned m) : k_(std::move(k)), m_(m) {}
+  Root(Integer k, unsigned m) : k_(std::move(k)), m_(m) {
+    assert(0 <= k_ && k_ <= Integer(1) << m_);
+  }
   /// @brief The root of a polynomial in (k, k + 1) / 2^m.
   Root(Integer k, unsigned m, ExactPolynomial polynomial)
       : k_(std::move(k)),
         m_(m),
         is_dyadic_(false),
         sign_below_(polynomial.signAt(k_, m_)),
-        polynomial_(std::move(polynomial)) {}
+        polynomial_(std::move(polynomial)) {
+    assert(isBetweenEnds());
+  }
 
   /// @brief The exact sign of g at the root. It may narrow the interval.
   int signOf(const ExactPolynomial& g);
@@ -134,6 +138,8 @@ class Root {
   /// No positive double needs more bits.
   static constexpr unsigned kMaxBits = 1100;
 
+  /// Whether the interval is in [0, 1], and the signs at its ends show a root.
+  bool isBetweenEnds() const;
   std::pair<double, double> bracketOnClock(double width, int clock_exponent);
   int signOfLine(const ExactPolynomial& g) const;
   /// Makes the interval shorter by a factor of 2^-bits if the root is where it seems to

@@ -5,6 +5,7 @@
 #ifndef FCL_CCD_NUMERICS_FIXED_INTEGER_H
 #define FCL_CCD_NUMERICS_FIXED_INTEGER_H
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -26,6 +27,7 @@ class FixedInteger {
   FixedInteger() = default;
   /// @brief digits * 2^shift, shift < kBits - 64.
   FixedInteger(std::int64_t digits, unsigned shift) {
+    assert(shift < static_cast<unsigned>(kBits) - 64);
     const std::uint64_t sign = digits < 0 ? ~std::uint64_t{0} : 0;
     FixedInteger value;
     for (std::uint64_t& word : value.w_) word = sign;
@@ -41,6 +43,7 @@ class FixedInteger {
       sum.w_[i] = static_cast<std::uint64_t>(carry);
       carry >>= 64;
     }
+    assert(a.isNegative() != b.isNegative() || sum.isNegative() == a.isNegative());
     return sum;
   }
   friend FixedInteger operator-(const FixedInteger& a, const FixedInteger& b) {
@@ -51,10 +54,12 @@ class FixedInteger {
       difference.w_[i] = static_cast<std::uint64_t>(rest);
       borrow = static_cast<std::uint64_t>(rest >> 64) & 1;
     }
+    assert(a.isNegative() == b.isNegative() || difference.isNegative() == a.isNegative());
     return difference;
   }
   /// @brief b < 2^127.
   friend FixedInteger operator*(const FixedInteger& a, DoubleWord b) {
+    assert((b >> 127) == 0);
     const FixedInteger low = a.times(static_cast<std::uint64_t>(b));
     const auto high = static_cast<std::uint64_t>(b >> 64);
     return high == 0 ? low : low + (a.times(high) << 64);
@@ -68,12 +73,13 @@ class FixedInteger {
                           below = i > words ? a.w_[i - words - 1] : 0;
       out.w_[i] = bits == 0 ? word : word << bits | below >> (64 - bits);
     }
+    assert(out.isNegative() == a.isNegative());
     return out;
   }
 
   /// @brief The nearest double.
   double toDouble() const {
-    const bool negative = w_[kWords - 1] >> 63 != 0;
+    const bool negative = isNegative();
     const FixedInteger size = negative ? FixedInteger(0, 0) - *this : *this;
     std::size_t top = kWords;
     while (top > 0 && size.w_[top - 1] == 0) --top;
@@ -98,6 +104,7 @@ class FixedInteger {
 
   /// @brief 2^exponent, for a normal double.
   static double powerOfTwo(int exponent) {
+    assert(-1022 <= exponent && exponent <= 1023);
     const std::uint64_t bits = static_cast<std::uint64_t>(exponent + 1023) << 52;
     double value;
     std::memcpy(&value, &bits, sizeof value);
@@ -105,6 +112,7 @@ class FixedInteger {
   }
 
  private:
+  bool isNegative() const { return w_[kWords - 1] >> 63 != 0; }
   FixedInteger times(std::uint64_t b) const {
     FixedInteger product;
     DoubleWord carry = 0;
@@ -113,6 +121,7 @@ class FixedInteger {
       product.w_[i] = static_cast<std::uint64_t>(carry);
       carry >>= 64;
     }
+    assert(b == 0 || product.isNegative() == isNegative());
     return product;
   }
 

@@ -22,6 +22,7 @@ double illinois(F&& f, double lo, double hi, double f_lo, double f_hi, double to
     const double previous = t;
     t = (f_hi * lo - f_lo * hi) / (f_hi - f_lo);
     if (!(t > lo && t < hi)) t = lo + 0.5 * (hi - lo);
+    assert(lo <= t && t <= hi);
     if (std::abs(t - previous) <= tol) break;
     const double value = f(t);
     if (value == 0) break;

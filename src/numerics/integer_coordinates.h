@@ -35,6 +35,8 @@ struct BinaryDigits {
     digits = static_cast<std::int64_t>(all >> zeros);
     if (bits >> 63 != 0) digits = -digits;
     exponent = std::max(field, 1) - 1075 + zeros;
+    assert(digits % 2 != 0);
+    assert(std::ldexp(static_cast<double>(digits), exponent) == value);
   }
 
   int numDigits() const {
@@ -57,7 +59,10 @@ struct DigitRange {
   }
   bool isEmpty() const { return lowest > highest; }
   /// @brief The number of bits of the integers. The range must not be empty.
-  int numDigits() const { return highest - lowest + 1; }
+  int numDigits() const {
+    assert(!isEmpty());
+    return highest - lowest + 1;
+  }
 };
 
 /// @brief value * 2^-lowest, for a finite value in a DigitRange.
