@@ -2,6 +2,7 @@
 #include "elementary/accurate_nearest.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "numerics/double_double.h"
@@ -79,12 +80,16 @@ NearestPoint nearestOf(const DifferencePolygon& polygon, const Vec* corners,
     const double along = -dot(from, way) / dot(way, way);
     near.along = along > 0 ? std::min(along, 1.) : 0;
   }
+  // Only a polygon of three corners or more has an inside.
+  assert(near.corner >= 0 || near.side >= 0 || polygon.count() > 2);
+  assert(near.corner < polygon.count() && near.side < polygon.sides());
   return near;
 }
 
 }  // namespace
 
 double lowestAlong(const Vec& n, const Vec* corners, int count) {
+  assert(count > 0);
   double height = dot(n, corners[0]);
   for (int k = 1; k < count; ++k) height = std::min(height, dot(n, corners[k]));
   return height;
@@ -112,6 +117,8 @@ AccurateNearest accurateNearest(const DifferencePolygon& polygon, const Vec* cor
   }
   AccurateNearest out;
   if (!(height > 0)) return out;
+  // No corner is nearer. A vector is at most 1.8 times as long as its largest coordinate.
+  assert(isDirection(best) && !(height > 3 * maxNorm(corners[0])));
   out.direction = best;
   out.near = nearestOf(polygon, corners, of_best, best, height);
   out.corners[0] = of_best.i;

@@ -31,6 +31,7 @@ Vec mean(double t, const Vec& p, const Vec& q) { return (1 - t) * p + t * q; }
 
 /// Two steps of a blossom are 6 units, and the rounding of the coefficients is one more.
 MovingCross restrict(const MovingCross& f, double lo, double hi) {
+  assert(0 <= lo && lo <= hi && hi <= 1 && !(f.error < 0));
   const Vec mid = 0.5 * f.c1;
   const Vec lo_0 = mean(lo, f.c0, mid), lo_1 = mean(lo, mid, f.c2);
   return {{mean(lo, lo_0, lo_1), 2 * mean(hi, lo_0, lo_1),
@@ -124,6 +125,7 @@ AccuratePair::Factors AccuratePair::factors(int i) const {
 bool AccuratePair::volume(double lo, double hi, double (&b)[4], double& error) const {
   const double v[4] = {volume_[0].hi, volume_[1].hi / 3, volume_[2].hi / 3,
                        volume_[3].hi};
+  assert(!(volume_error_ < 0));
   // Three steps of a blossom are 9 units. The rounding of the coefficients is two more,
   // and later factors of 3 are another two.
   error = volume_error_ + 16 * kUnit * volume_size_;
@@ -206,7 +208,11 @@ AccuratePair::RootContact AccuratePair::contactAtRoot(double lo, double hi) cons
   // One unit for t.lo, and one for the rounding of the bracket.
   const double margin =
       2 * t_error + 4 * kUnit * t.hi + std::numeric_limits<double>::min();
-  return {touchAt(t, t_error), std::max(lo, t.hi - margin), std::min(hi, t.hi + margin)};
+  const double from = std::max(lo, t.hi - margin), to = std::min(hi, t.hi + margin);
+  // The root is between them.
+  assert(sign * volumeAt({from, 0}).hi <= value_error);
+  assert(sign * volumeAt({to, 0}).hi >= -value_error);
+  return {touchAt(t, t_error), from, to};
 }
 
 Answer AccuratePair::touchAt(const DoubleDouble& t, double t_error) const {
@@ -215,6 +221,7 @@ Answer AccuratePair::touchAt(const DoubleDouble& t, double t_error) const {
   // component of a cross product has four factors with such errors, their squares, and 3
   // products' errors of its own. An underflow in a difference is multiplied by the other
   // factor.
+  assert(t_error >= 0);
   const double difference_error = 4 * kProductBound + 2 * t_error;
   if (!(difference_error < 0x1p-10)) return Answer::kUnsure;
   const auto crossError = [difference_error](double a_norm, double b_norm) {

@@ -59,7 +59,11 @@ double leastLength(const MovingCross& n) {
   const double length = lengthOf(middle);
   if (!(length > 0)) return 0;
   const Vec m = (1 / length) * middle;
-  return std::min(std::min(dot(m, n.c0), 0.5 * dot(m, n.c1)), dot(m, n.c2)) - 4 * n.error;
+  const double least =
+      std::min(std::min(dot(m, n.c0), 0.5 * dot(m, n.c1)), dot(m, n.c2)) - 4 * n.error;
+  // Not above the length at the ends, which is below 1.8 times the largest coordinate.
+  assert(!(least > 2 * maxNorm(n.c0)) && !(least > 2 * maxNorm(n.c2)));
+  return least;
 }
 
 /// An upper bound on the length of the derivative of n, v' x w + v x w', which is linear.
@@ -104,14 +108,20 @@ class ApproachSearch {
     if (toc_hi < request_.t_max) open_.push({toc_hi, request_.t_max});
     // A contact that approaches is decided by the first look.
     open_.push({request_.toc_lo, toc_hi});
+    [[maybe_unused]] double left_out_until = request_.toc_lo;
     for (int looks = 0; !open_.isEmpty(); ++looks) {
       const Interval now = open_.pop();
-      if (isLeftOut(now.lo, now.hi, looks == 0)) continue;
+      assert(now.lo == left_out_until);
+      if (isLeftOut(now.lo, now.hi, looks == 0)) {
+        left_out_until = now.hi;
+        continue;
+      }
       if (now.hi - now.lo <= kNarrow || looks == Intervals::kMaxLooks) return now.lo;
       const double middle = now.lo + 0.5 * (now.hi - now.lo);
       open_.push({middle, now.hi});
       open_.push({now.lo, middle});
     }
+    assert(left_out_until >= request_.t_max);
     return kNever;
   }
 
@@ -191,6 +201,7 @@ class ApproachSearch {
 double approachesFrom(ContinuousContactKind kind, const FeaturePoints& x,
                       const TouchingRequest& request) {
   assert(request.min_approach_speed > 0 && request.toc_lo <= request.toc_hi);
+  assert(0 <= request.toc_lo && request.toc_hi <= 1 && request.t_max <= 1);
   if (axisOfCommonPlane(x) >= 0) return kNever;
   return ApproachSearch(kind, x, request).first();
 }

@@ -4,6 +4,7 @@
 #ifndef FCL_CCD_ELEMENTARY_AXIS_WINDOW_H
 #define FCL_CCD_ELEMENTARY_AXIS_WINDOW_H
 
+#include <cassert>
 #include <cfloat>
 #include <cmath>
 
@@ -42,6 +43,7 @@ constexpr double kWindowMargin = 0x1p-18;
 /// @return false if nothing is left: the features never touch in [lo, hi].
 inline bool narrowWindow(const AxisRanges& a, const AxisRanges& b, double& lo,
                          double& hi) {
+  assert(0 <= lo && lo <= hi && hi <= 1);
   FramePair depth[6];
   bool apart = false, cut = false;
   for (int k = 0; k < 3; ++k) {
@@ -59,9 +61,11 @@ inline bool narrowWindow(const AxisRanges& a, const AxisRanges& b, double& lo,
     if (!(std::abs(change) <= DBL_MAX)) continue;  // overflow: no quotient
     if (s[0] < 0) {
       const double enter = s[0] / change - kWindowMargin;
+      assert(-kWindowMargin <= enter && enter <= 1);
       if (enter > lo) lo = enter;
     } else if (s[1] < 0) {
       const double leave = s[0] / change + kWindowMargin;
+      assert(0 < leave && leave <= 1 + kWindowMargin);
       if (leave < hi) hi = leave;
     }
   }

@@ -2,6 +2,7 @@
 #include "elementary/distance_advance.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -33,6 +34,7 @@ struct OrderedPair : OrderedPoints<VertexPath> {
 /// n, of length 1 or less, without its parts along v and w, and with length 1; the zero
 /// vector if nothing is left.
 Vec perpendicular(Vec n, Vec v, Vec w) {
+  assert(!(dot(n, n) > 1 + 0x1p-46));
   const auto without = [](const Vec& x, const Vec& y) {
     const double square = dot(y, y);
     return square > 0 ? x - (dot(x, y) / square) * y : x;
@@ -52,6 +54,7 @@ Vec perpendicular(Vec n, Vec v, Vec w) {
 
 /// n, of length 1 or less, without its part along v, and with length 1.
 Vec perpendicular(Vec n, const Vec& v) {
+  assert(!(dot(n, n) > 1 + 0x1p-46));
   const double square = dot(v, v);
   if (square > 0) n = n - (dot(n, v) / square) * v;
   const double length = std::sqrt(dot(n, n));
@@ -76,6 +79,7 @@ struct TurningDirection {
 
 Vec directionApart(const DifferencePolygon& polygon, const Vec* corners,
                    const NearestPoint& near, int attempt) {
+  assert(0 <= attempt && attempt < kDirectionAttempts);
   const bool is_corner = near.corner >= 0, is_inside = !is_corner && near.side < 0;
   Vec n = near.point;
   if (is_inside && attempt == 0)
@@ -106,6 +110,7 @@ Vec directionApart(const DifferencePolygon& polygon, const Vec* corners,
 NearestPoint sureNearest(const DifferencePolygon& polygon, const Vec* corners,
                          const NearestPoint& near, double error) {
   const Vec n = directionApart(polygon, corners, near, 0);
+  assert(isDirection(n) && error >= 0);
   const double height = lowestAlong(n, corners, polygon.count());
   return height >= near.distance - error ? near : accurateNearest(polygon, corners).near;
 }
@@ -131,6 +136,7 @@ Vec turnApart(const DifferencePolygon& polygon, const Vec* corners, const Vec* v
 }
 
 double firstRoot(double gap, double rate, double bend) {
+  assert(gap > 0);
   const double discriminant = rate * rate - 4 * gap * bend;
   if (!(discriminant >= 0)) return kInfinity;
   const double root = std::sqrt(discriminant);
@@ -163,6 +169,7 @@ void setNearest(ContinuousContactKind kind, const NearestPoint& near,
                1 + (near.side + 1) % 3);
   // A side of the parallelogram belongs to an end of one edge and to the other edge.
   constexpr int kVertex[] = {0, 3, 1, 2};
+  assert(kind == ContinuousContactKind::kEdgeEdge && near.side < 4);
   const int other = near.side % 2 == 0 ? 2 : 0;
   set(ContinuousContactKind::kVertexEdge, kVertex[near.side], other, other + 1);
 }
@@ -178,6 +185,8 @@ void setPart(ContinuousContactKind kind, const NearestPoint& near, const int (&n
   if (out.kind == kind)
     for (int m = 0; m < 4; ++m)
       if (p[m] >= 0) p[m] = m;
+  assert(out.kind != ContinuousContactKind::kVertexEdge || p[1] < p[2]);
+  assert(out.kind != ContinuousContactKind::kVertexVertex || p[0] < p[1]);
 }
 
 namespace {
@@ -209,6 +218,7 @@ class AdvancingPair {
   double size() const { return polygon_.size(); }
 
   NearestPoint nearestAt(double t) {
+    assert(0 <= t && t <= 1);
     for (int k = 0; k < polygon_.count(); ++k) corners_[k] = polygon_.at(k, t);
     return nearestPoint(polygon_, corners_);
   }
@@ -229,7 +239,9 @@ class AdvancingPair {
   }
 
   Vec direction(const NearestPoint& near, int attempt) const {
-    return directionApart(polygon_, corners_, near, attempt);
+    const Vec n = directionApart(polygon_, corners_, near, attempt);
+    assert(isDirection(n));
+    return n;
   }
 
   NearestPoint sureNearest(const NearestPoint& near, double error) const {
@@ -277,6 +289,7 @@ class AdvancingPair {
     const double rest = (t_max - t) * (1 + 0x1p-40) + 0x1p-1000,
                  longest = followingStep(polygon_, corners_, velocities_, nearest, size(),
                                          apart.least, rest);
+    assert(0 <= longest && longest <= rest);
     if (longest == rest) return {kInfinity, 0};
     const double until = (t + longest) * Advance::kDown;
     return until > step.until ? Step{until, step.rate} : step;
@@ -330,6 +343,7 @@ class AdvancingPair {
                        dot(turn, change) - 0.5 * apart.d * square + apart.speed * along;
       if (!(gap > 0)) return {-kInfinity, 0};
       const double root = firstRoot(gap, closing, bend);
+      assert(!(root < 0));
       if (root < longest) {
         longest = root;
         rate = -closing;
@@ -381,6 +395,8 @@ void setBracket(AdvancingPair& pair, const DistanceTolerance& tolerance,
   const double width =
       std::min(std::min(request.toc_err, Advance::kShareOfTime * t), request.t_max - t);
   out.toc_hi = proveWithin(pair, tolerance, d, t, width, near, rate);
+  assert(t <= out.toc_hi && out.toc_hi <= request.t_max);
+  assert(out.toc_hi - out.toc_lo <= request.toc_err);
 }
 
 /// The advancement of a pair, from the time 0 on.
@@ -395,7 +411,10 @@ class Advancement {
         min_approach_speed_(min_approach_speed),
         t_stop_(std::min(request.t_max, request.t_stop)),
         d_(request.distance),
-        tolerance_(d_, pair.size()) {}
+        tolerance_(d_, pair.size()) {
+    assert(d_ >= 0 && request.toc_err > 0 && min_approach_speed >= 0);
+    assert(0 <= t_stop_ && t_stop_ <= 1 && request.t_max <= 1);
+  }
 
   DistanceContact run() {
     for (;; ++out_.steps) {
@@ -428,6 +447,7 @@ class Advancement {
       d_ -= speed_ * (step.until - t_);
       t_ = step.until;
       rate_ = step.rate;
+      assert(isWithinStep());
     }
   }
 
@@ -441,6 +461,7 @@ class Advancement {
   }
 
   AdvancingPair::Apart apart() const {
+    assert(speed_ >= 0);
     return {d_, d_ + tolerance_.margin + 32 * kUnit * speed_, speed_};
   }
 
@@ -462,6 +483,7 @@ class Advancement {
     if (!(least > 0)) return false;
     const double speed = std::min(min_approach_speed_, least / (1 - t_));
     if (!(pair_.closingSpeed(near_) <= speed)) return false;
+    assert(least < d_ && speed > 0);
     kept_d_ = d_;
     d_ = least;
     speed_ = speed;
@@ -494,7 +516,18 @@ class Advancement {
     return false;
   }
 
+  /// Whether the distance of a pair that is left out stays above 0, up to rounding.
+  bool isWithinStep() const {
+    const double share = DistanceTolerance::kShare * request_.distance;
+    return t_ <= t_stop_ && d_ > -(share + tolerance_.touching);
+  }
+
   DistanceContact contact() {
+    // sureNearest() may replace the point by one that is off by the error.
+    assert(out_.is_given_up ||
+           near_.distance <=
+               (d_ + (DistanceTolerance::kShare * d_ + tolerance_.touching)) * kUpward +
+                   tolerance_.distance_error);
     setPart(kind_, near_, number_, out_);
     setBracket(pair_, tolerance_, request_, d_, t_, near_, rate_, out_);
     return out_;
@@ -567,6 +600,7 @@ void distanceGeometry(ContinuousContactKind kind, const FeaturePoints& x, double
   AdvancingPair pair(kind, ordered.x);
   const NearestPoint near = pair.nearestAt(t);
   const double s = kind == ContinuousContactKind::kEdgeEdge ? placeOnFirstEdge(near) : 0;
+  assert(0 <= s && s <= 1);
   const double way[3] = {near.point.x, near.point.y, near.point.z};
   const auto at = [&](int i, int k) {
     return (1 - t) * ordered.x[i].t0[k] + t * ordered.x[i].t1[k];

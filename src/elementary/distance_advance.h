@@ -9,6 +9,8 @@
 #ifndef FCL_CCD_ELEMENTARY_DISTANCE_ADVANCE_H
 #define FCL_CCD_ELEMENTARY_DISTANCE_ADVANCE_H
 
+#include <cassert>
+
 #include "elementary/feature_points.h"
 #include "elementary/nearest_point.h"
 #include "numerics/error_bounds.h"
@@ -44,7 +46,9 @@ struct DistanceTolerance {
   DistanceTolerance(double distance, double size)
       : distance_error(64 * kUnit * size),
         margin(128 * kUnit * (distance + size)),
-        touching(kTouching * (distance + size)) {}
+        touching(kTouching * (distance + size)) {
+    assert(distance >= 0 && size >= 0 && !(touching < margin + 2 * distance_error));
+  }
 
   /// Bound on the error of the length of a computed nearest point.
   double distance_error;

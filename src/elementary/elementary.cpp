@@ -7,12 +7,14 @@
 #include <limits>
 #include <optional>
 
+#include "base/default_floating_point.h"
 #include "elementary/accurate_pair.h"
 #include "elementary/axis_window.h"
 #include "elementary/coplanarity_filter.h"
 #include "elementary/exact.h"
 #include "elementary/in_plane.h"
 #include "elementary/interval_stack.h"
+#include "elementary/least_length.h"
 #include "elementary/moving_pair.h"
 #include "elementary/pair_table.h"
 #include "elementary/predicates.h"
@@ -70,6 +72,7 @@ struct Undecided {
   double unsure_hi{0};
 
   void addUnsure(double lo, double hi) {
+    assert(lo <= hi && (!unsure || unsure_lo <= lo));
     if (!unsure) unsure_lo = lo;
     unsure = true;
     unsure_hi = std::max(unsure_hi, hi);
@@ -104,8 +107,12 @@ class ContactSearch {
 
   ElementaryResult firstContact(double window_lo, double window_hi) {
     open_.push({window_lo, window_hi});
+    [[maybe_unused]] Interval last{window_lo, window_lo};
     for (; !open_.isEmpty(); ++looks_) {
       const auto [lo, hi] = open_.pop();
+      // What was before is decided, or noted as unsure.
+      assert(last.lo <= lo && lo <= last.hi);
+      last = {lo, hi};
       // An undecided interval may end in a contact that begins after t_stop.
       if (lo > t_stop_ && !found_.unsure) break;
       if (looks_ == Intervals::kMaxLooks) {
@@ -144,6 +151,7 @@ class ContactSearch {
     if (accurate_ && crosses && side == Side::kMixed) {
       const AccuratePair::RootContact contact = accurate_->contactAtRoot(lo, hi);
       if (contact.answer == Answer::kNo) return false;
+      assert(lo <= contact.lo && contact.lo <= contact.hi && contact.hi <= hi);
       if (contact.answer == Answer::kYes)
         return finish(found_.withContactIn(contact.lo, contact.hi, toc_err_));
     }
@@ -244,6 +252,16 @@ class ContactSearch {
   ElementaryResult answer_{Answer::kUnsure, 0, 1, DecidedBy::kSolver};
 };
 
+/// Whether the bracket of a contact, if there may be one, begins in the window, and is no
+/// wider than wanted if a contact is proved.
+[[maybe_unused]] bool isBracketFrom(double window_lo, double toc_err,
+                                    const ElementaryResult& result) {
+  const double lo = result.toc_lo, hi = result.toc_hi;
+  return result.answer == Answer::kNo ||
+         (window_lo <= lo && lo <= hi && hi <= 1 &&
+          (result.answer == Answer::kUnsure || hi - lo <= toc_err));
+}
+
 }  // namespace
 
 ElementaryResult solveCoplanarity(ContinuousContactKind kind, const FeaturePoints& x,
@@ -258,9 +276,13 @@ ElementaryResult solveCoplanarity(ContinuousContactKind kind, const FeaturePoint
       return {Answer::kYes, 0, 0, DecidedBy::kSolver};
     const ElementaryResult result =
         solveInPlane(kind, x, axis, window_lo, window_hi, toc_err);
+    assert(isBracketFrom(window_lo, toc_err, result));
     if (result.answer != Answer::kUnsure) return result;
   }
-  return ContactSearch(kind, x, toc_err, t_stop).firstContact(window_lo, window_hi);
+  const ElementaryResult result =
+      ContactSearch(kind, x, toc_err, t_stop).firstContact(window_lo, window_hi);
+  assert(isBracketFrom(window_lo, toc_err, result));
+  return result;
 }
 
 double apartUntil(ContinuousContactKind kind, const FeaturePoints& x, double window_lo,
@@ -283,6 +305,7 @@ double apartUntil(ContinuousContactKind kind, const FeaturePoints& x, double win
     // of the window in which it stays positive is rounded three times, the time four
     // times, by 2^-53 each.
     const double share = at_lo / (at_lo - at_hi) * (1 - 0x1p-50);
+    assert(0 <= share && share <= 1);
     until = std::min(until, window_lo + share * (window_hi - window_lo) - 0x1p-51);
   }
   return std::max(window_lo, until);
@@ -291,6 +314,9 @@ double apartUntil(ContinuousContactKind kind, const FeaturePoints& x, double win
 ElementaryResult decide(ContinuousContactKind kind, const FeaturePoints& x,
                         double window_lo, double window_hi, double toc_err, double t_stop,
                         double t_max) {
+  assert(window_hi <= t_max);
+  // The bounds on rounding are those of this mode.
+  assert(isDefaultFloatingPointMode());
   const ElementaryResult solved =
       solveCoplanarity(kind, x, window_lo, window_hi, toc_err, t_stop);
   if (solved.answer != Answer::kUnsure) return solved;
@@ -404,6 +430,8 @@ void contactGeometry(ContinuousContactKind kind, const FeaturePoints& x, double 
     weight[2] = 1 - at.second;
     weight[3] = at.second;
   }
+  // Those of a point add up to 1, minus those of the other one.
+  assert(std::abs(weight[0] + weight[1] + weight[2] + weight[3]) <= 0x1p-50);
   double position_1[3] = {0, 0, 0}, relative_velocity[3] = {0, 0, 0};
   double offset_t0[3] = {0, 0, 0};
   for (int i = 0; i < 4; ++i)
@@ -421,6 +449,8 @@ void contactGeometry(ContinuousContactKind kind, const FeaturePoints& x, double 
     return;
   }
   n = (1 / length) * n;
+  // A subnormal square has lost digits.
+  assert(area < kLeastSquare || std::abs(dot(n, n) - 1) < 0x1p-46);
   double along =
       dot(n, {relative_velocity[0], relative_velocity[1], relative_velocity[2]});
   if (along == 0) along = -dot(n, {offset_t0[0], offset_t0[1], offset_t0[2]});

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdlib>
+#include <limits>
 #include <vector>
 
 #include "elementary/exact_pair.h"
@@ -25,8 +26,10 @@ struct TimeLimit {
             before = (Integer(1) << static_cast<unsigned>(-t.exponent)) - after;
     (clock_exponent > 0 ? after : before) <<=
         static_cast<unsigned>(std::abs(clock_exponent));
+    assert(t.exponent <= 0);
     numerator = after;
     denominator = before + after;
+    assert(0 <= numerator && numerator <= denominator);
   }
 };
 
@@ -38,10 +41,22 @@ bool isDecidedAtStart(const ExactQuery& query, double t_max, ElementaryResult& r
   return touch || t_max == 0;
 }
 
+/// Whether the bracket of a contact is in [0, t_max], and no wider than that and a few
+/// units in the last place.
+[[maybe_unused]] bool isBracketUntil(double t_max, double toc_err,
+                                     const ElementaryResult& result) {
+  const double lo = result.toc_lo, hi = result.toc_hi;
+  return result.answer != Answer::kYes ||
+         (0 <= lo && lo <= hi && hi <= t_max &&
+          hi - lo <= toc_err + 8 * std::numeric_limits<double>::epsilon() * hi +
+                         std::numeric_limits<double>::min());
+}
+
 }  // namespace
 
 ElementaryResult decideByRoots(const ExactPair& pair, int clock_exponent, double toc_err,
                                double t_stop, double t_max) {
+  assert(toc_err > 0 && 0 <= t_max && t_max <= 1);
   std::vector<Root> times = pair.candidates();
   std::sort(times.begin(), times.end(),
             [](const Root& a, const Root& b) { return a.lowerBound() < b.lowerBound(); });
@@ -54,6 +69,7 @@ ElementaryResult decideByRoots(const ExactPair& pair, int clock_exponent, double
     if (t_max < 1 && t.compare(limit.numerator, limit.denominator) > 0) continue;
     if (!pair.touchAt(t)) continue;
     const auto [t_lo, t_hi] = t.bracket(toc_err, clock_exponent);
+    assert(t_lo <= t_hi && t_lo <= t_max);
     lo = touch ? std::min(lo, t_lo) : t_lo;
     hi = std::min(hi, t_hi);
     latest = std::min(latest, t.upperBound());
@@ -72,10 +88,13 @@ ElementaryResult decideExactly(ContinuousContactKind kind, const FeaturePoints& 
   if (isDecidedAtStart(query, t_max, result)) return result;
   if (isWorthMagnifying(kind, x)) {
     result = solveMagnified(query, toc_err, t_stop, t_max);
+    assert(isBracketUntil(t_max, toc_err, result));
     if (result.answer != Answer::kUnsure) return result;
   }
-  return decideByRoots(query.pair(), query.digits().clock_exponent, toc_err, t_stop,
-                       t_max);
+  result =
+      decideByRoots(query.pair(), query.digits().clock_exponent, toc_err, t_stop, t_max);
+  assert(isBracketUntil(t_max, toc_err, result));
+  return result;
 }
 
 ElementaryResult decideExactly(const ExactPair& pair, double toc_err) {

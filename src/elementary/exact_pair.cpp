@@ -2,6 +2,7 @@
 #include "elementary/exact_pair.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "elementary/in_plane.h"
@@ -42,6 +43,13 @@ std::array<MovingPoint, 4> integerPaths(const FeaturePoints& x,
   return points;
 }
 
+[[maybe_unused]] bool areLinear(const std::array<MovingPoint, 4>& paths) {
+  for (const MovingPoint& path : paths)
+    for (const ExactPolynomial& x : path)
+      if (x.degree() > 1) return false;
+  return true;
+}
+
 }  // namespace
 
 ExactPair::ExactPair(ContinuousContactKind kind, const FeaturePoints& x,
@@ -56,6 +64,7 @@ ExactPair::ExactPair(ContinuousContactKind kind, const std::array<MovingPoint, 4
     : table_(pairTable(kind)),
       is_edge_edge_(kind == ContinuousContactKind::kEdgeEdge),
       p_(paths) {
+  assert(areLinear(paths));
   for (std::size_t i = 0; i < differences_.size(); ++i) {
     const auto [to, from] = table_.difference[i];
     differences_[i] = p_[to] - p_[from];
@@ -63,6 +72,7 @@ ExactPair::ExactPair(ContinuousContactKind kind, const std::array<MovingPoint, 4
   const auto& [u, v, w, r, q] = differences_;
   if (common_axis >= 0) {
     const auto k = static_cast<std::size_t>(common_axis);
+    assert(u[k].isZero() && v[k].isZero() && w[k].isZero());
     n_[k] = crossComponent(v, w, k);
     return;
   }
@@ -114,6 +124,8 @@ std::vector<Root> ExactPair::candidates() const {
 }
 
 bool ExactPair::touchAt(Root& t) const {
+  // Of a copy: a sign may narrow the interval, on which brackets depend.
+  assert(Root(t).signOf(volume_) == 0);
   for (std::size_t k = 0; k < 3; ++k) {
     const int sign = t.signOf(n_[k]);
     if (sign == 0) continue;
@@ -151,6 +163,7 @@ bool ExactPair::isOnSegmentAt(Root& t, const MovingPoint& p, const MovingPoint& 
 }
 
 bool ExactQuery::touchInFrame(int t) const {
+  assert(t == 0 || t == 1);
   const auto at = [&](int i) -> const double(&)[3] {
     return t == 0 ? x_[i].t0 : x_[i].t1;
   };
@@ -160,6 +173,7 @@ bool ExactQuery::touchInFrame(int t) const {
 }
 
 bool ExactQuery::isCoplanarInFrame(int t) const {
+  assert(t == 0 || t == 1);
   const auto at = [&](int i) -> const double(&)[3] {
     return t == 0 ? x_[i].t0 : x_[i].t1;
   };

@@ -2,7 +2,11 @@
 #include "elementary/flat_passage.h"
 
 #include <algorithm>
+#include <cassert>
+#include <cfloat>
 #include <cmath>
+
+#include "elementary/least_length.h"
 
 namespace fcl {
 namespace detail {
@@ -38,7 +42,8 @@ FlatPassage::FlatPassage(const MovingPair& pair, const FeaturePoints& x,
       toc_lo_(toc_lo),
       speed_(speed),
       tolerance_(kFlatShare * speed) {
-  assert(flat == 0 || is_edge_);
+  assert(flat == 0 || (flat == 1 && is_edge_));
+  assert(speed > 0);
   setNormal();
   setSide();
 }
@@ -56,6 +61,9 @@ void FlatPassage::setNormal() {
     largest = square;
     normal_ = (1 / std::sqrt(square)) * n;
   }
+  // Squares that are subnormal or infinite do not tell the length.
+  assert(!(largest > kLeastSquare && largest <= DBL_MAX) ||
+         std::abs(dot(normal_, normal_) - 1) < 0x1p-46);
 }
 
 /// That of the point furthest from the plane.
@@ -73,6 +81,7 @@ void FlatPassage::setSide() {
 /// A height changes linearly, and so does what is allowed. What comes nearer to the plane
 /// faster than the speed stays before it.
 FlatPassage::Answer FlatPassage::besideOrAcross(double lo, double hi) const {
+  assert(toc_lo_ <= lo && lo <= hi && hi <= 1);
   bool is_beside = side_ != 0, is_within = true;
   double highest[2] = {0, 0};
   for (int i = other_; i < other_end_; ++i) {

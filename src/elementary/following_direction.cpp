@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "elementary/following_direction.h"
 
+#include <cassert>
 #include <cmath>
 
 #include "numerics/double_double.h"
@@ -80,6 +81,7 @@ struct MovingDirection {
     const double length = std::sqrt(dot(coefficient[0], coefficient[0])),
                  sign = dot(coefficient[0], corner) < 0 ? -1 : 1;
     for (Vec& v : coefficient) v = (sign / length) * v;
+    assert(isDirection(coefficient[0]));
     return true;
   }
 };
@@ -135,6 +137,8 @@ MovingDirection directionOf(const Vec* corners, const Vec* velocities,
 double followingStep(const DifferencePolygon& polygon, const Vec* corners,
                      const Vec* velocities, const AccurateNearest& nearest, double size,
                      double least, double longest) {
+  assert(longest > 0 && size >= 0);
+  assert(nearest.corners[0] >= 0 && nearest.corners[0] < polygon.count());
   constexpr int kDegree = MovingDirection::kDegree;
   constexpr double kRounding = 384 * kUnit;
   MovingDirection n = directionOf(corners, velocities, nearest.corners);

@@ -99,6 +99,7 @@ class PlanarQuadratic {
   /// units. 16 units leave room for the rounding of the size and of the bound itself.
   /// Underflows of weights and terms are below the smallest normal number times the size.
   Bounded blossom(double s, double t) const {
+    assert(0 <= s && s <= 1 && 0 <= t && t <= 1);
     const double w0 = (1 - s) * (1 - t), w1 = (1 - s) * t + s * (1 - t), w2 = s * t;
     return {w0 * c_[0] + w1 * c_[1] + w2 * c_[2],
             16 * kUnit * (w0 * size_[0] + w1 * size_[1] + w2 * size_[2]) + underflow_};
@@ -137,8 +138,10 @@ struct FirstContact {
   bool hasContact() const { return hi <= 1; }
   void addUnsure(double from) { lo = std::min(lo, from); }
   void addContact(double from, double to) {
+    assert(from <= to);
     lo = std::min(lo, from);
     hi = std::min(hi, to);
+    assert(lo <= hi);
   }
 };
 
@@ -196,6 +199,7 @@ void findContact(const PointAndSegment& pair, double lo, double hi, double toc_e
   const auto goOn = [&] { lo = end[--open]; };
   for (int look = 0; open > 0; ++look) {
     hi = end[open - 1];
+    assert(lo <= hi);
     const double width = hi - lo;
     if (pair.isApart(lo, hi)) {
       goOn();
@@ -239,6 +243,7 @@ void findPointOnSegment(const VertexPath& p, const VertexPath& q, const VertexPa
 
 /// Whether a line of x, y, x + y or x - y = constant keeps the features apart at t.
 bool areApartAt(double t, bool vf, const FeaturePoints& x, int axis) {
+  assert(0 <= t && t <= 1);
   bool all_positive[4] = {true, true, true, true};
   bool all_negative[4] = {true, true, true, true};
   for (int i = 0; i < (vf ? 1 : 2); ++i)
@@ -289,6 +294,7 @@ ElementaryResult solveInPlane(ContinuousContactKind kind, const FeaturePoints& x
     findPointOnSegment(x[p], x[q], x[r], axis, window_lo, std::min(window_hi, found.hi),
                        toc_err, found);
   }
+  assert(window_lo <= found.lo && (!found.hasContact() || found.hi <= window_hi));
   if (found.hasContact() && found.hi - found.lo <= toc_err)
     return {Answer::kYes, found.lo, found.hi, DecidedBy::kSolver};
   if (found.lo <= 1) return {Answer::kUnsure, found.lo, window_hi, DecidedBy::kSolver};

@@ -20,6 +20,7 @@ class IntervalStack {
 
   void push(const Interval& interval) {
     assert(size_ < kCapacity);
+    assert(!(interval.hi < interval.lo));
     items_[size_++] = interval;
   }
   Interval pop() {

@@ -2,6 +2,7 @@
 #include "elementary/least_distance.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cfloat>
 #include <cmath>
 
@@ -15,13 +16,21 @@ namespace deformable {
 
 namespace {
 
+[[maybe_unused]] bool isAtRest(const DifferencePolygon& polygon) {
+  for (int k = 0; k < polygon.count(); ++k)
+    if (maxNorm(polygon.t1(k) - polygon.t0(k)) != 0) return false;
+  return true;
+}
+
 double leastDistanceOf(const DifferencePolygon& polygon) {
+  assert(isAtRest(polygon));
   Vec corners[DifferencePolygon::kMaxCorners];
   for (int k = 0; k < polygon.count(); ++k) corners[k] = polygon.t0(k);
   const NearestPoint near = nearestPoint(polygon, corners);
   double best = 0;
   for (int attempt = 0; attempt < kDirectionAttempts; ++attempt) {
     const Vec n = directionApart(polygon, corners, near, attempt);
+    assert(isDirection(n));
     double gap = dot(n, corners[0]);
     for (int k = 1; k < polygon.count(); ++k) gap = std::min(gap, dot(n, corners[k]));
     best = std::max(best, gap);
@@ -29,6 +38,8 @@ double leastDistanceOf(const DifferencePolygon& polygon) {
   }
   const double least =
       best * (1 - LeastDistance::kOfGap) - LeastDistance::kOfSize * polygon.size();
+  // A point of the polygon was found there.
+  assert(least <= near.distance + DistanceTolerance(0, polygon.size()).distance_error);
   return least > 0 ? least : 0;
 }
 

@@ -129,6 +129,18 @@ struct Interval {
   unsigned m;
 };
 
+/// Whether an interval is in the step.
+[[maybe_unused]] bool isInStep(const Interval& i) {
+  return i.lo <= i.hi && i.hi <= DoubleWord{1} << i.m;
+}
+
+/// Whether an interval begins in the one before it, or where that ends.
+[[maybe_unused]] bool isContinued(const Interval& before, const Interval& i) {
+  const unsigned m = std::max(before.m, i.m);
+  const DoubleWord lo = i.lo << (m - i.m);
+  return before.lo << (m - before.m) <= lo && lo <= before.hi << (m - before.m);
+}
+
 /// The differences of the pair's points as integers, and what of them is in an interval.
 /// Letters as in pair_table.h.
 template <std::size_t kWords>
@@ -167,6 +179,7 @@ class MagnifiedPair {
   const PairTable& table() const { return pairTable(kind_); }
 
   void moveTo(const Interval& i) {
+    assert(isInStep(i) && i.m <= timeBits());
     double largest = 0;
     for (std::size_t j = 0; j < 3; ++j) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -345,6 +358,7 @@ Place placeToLook(const Pair& pair, const EndsVolume& f) {
   const double ratio = ratioOfEnds(pair);
   const auto back = [ratio](double x) { return ratio * x / (1 - x + ratio * x); };
   const Place place = placeOfRoot(f.withRatio(ratio));
+  assert(0 <= place.a && place.a <= place.b && place.b <= 1);
   return {back(place.a), back(place.b)};
 }
 
@@ -367,6 +381,7 @@ bool cut(const Interval& i, const Place& place, unsigned time_bits, Intervals& o
   if (place.b < 1) b = std::min(hi, lo + static_cast<DoubleWord>(place.b * size) + 1);
   if (place.a == place.b) a = b = std::min(hi - 1, std::max(lo + 1, a));
   if (a == lo && b == hi) return false;
+  assert(lo <= a && a <= hi && lo <= b && b <= hi);
   const unsigned m = i.m + bits;
   if (b < hi) open.push({b, hi, m});
   if (a < b) open.push({a, b, m});
@@ -377,6 +392,7 @@ bool cut(const Interval& i, const Place& place, unsigned time_bits, Intervals& o
 /// The only root of p, simple, between lo / 2^m and hi / 2^m.
 Root rootBetween(const ExactPolynomial& p, DoubleWord lo, DoubleWord hi, unsigned m) {
   const int sign_lo = p.signAt(lo, m);
+  assert(sign_lo != 0 && p.signAt(hi, m) == -sign_lo);
   for (;;) {
     const DoubleWord width = hi - lo;
     unsigned bits = 0;
@@ -438,6 +454,7 @@ Finding Solver<kWords>::contactIn(const Interval& interval) {
   const double lo = timeOf(interval.lo, interval.m, clockExponent(), -1),
                hi = timeOf(interval.hi, interval.m, clockExponent(), 1);
   constexpr double kUlps = 4 * std::numeric_limits<double>::epsilon();
+  assert(0 <= lo && lo <= hi && hi <= 1);
   if (hi - lo > std::max(toc_err_, kUlps * lo)) return Finding::kOpen;
   contact_ = {Answer::kYes, lo, hi, DecidedBy::kExact};
   return Finding::kContact;
@@ -472,13 +489,18 @@ Finding Solver<kWords>::lookAtRoot(const Interval& interval) {
 template <std::size_t kWords>
 ElementaryResult Solver<kWords>::solve(double t_end) {
   const ElementaryResult unsure = {Answer::kUnsure, 0, t_end, DecidedBy::kExact};
+  assert(0 < t_end && t_end <= 1);
   const BinaryDigits end(t_end);
   const auto end_bits = static_cast<unsigned>(-end.exponent);
   if (!pair_.fits() || end_bits > pair_.timeBits()) return unsure;
   Intervals open;
   open.push({0, static_cast<DoubleWord>(end.digits), end_bits});
+  [[maybe_unused]] Interval last{0, 0, 0};
   for (int looks = 0; !open.isEmpty(); ++looks) {
     const Interval interval = open.pop();
+    // What was before is decided.
+    assert(isContinued(last, interval));
+    last = interval;
     if (looks == Intervals::kMaxLooks) return unsure;
     pair_.moveTo(interval);
     const EndsCross n(pair_.v(), pair_.w());
@@ -493,6 +515,7 @@ ElementaryResult Solver<kWords>::solve(double t_end) {
     }
     if (found == Finding::kContact) {
       contact_.toc_hi = std::min(contact_.toc_hi, t_end);
+      assert(contact_.toc_lo <= contact_.toc_hi);
       return contact_;
     }
   }
@@ -503,6 +526,7 @@ ElementaryResult Solver<kWords>::solve(double t_end) {
 
 ElementaryResult solveMagnified(ExactQuery& query, double toc_err, double t_stop,
                                 double t_max) {
+  assert(toc_err > 0 && 0 < t_max && t_max <= 1 && !query.touchInFrame(0));
   const int clock_exponent = query.digits().clock_exponent;
   // On another clock t_max is a fraction, which intervals cannot represent.
   if (t_max < 1 && clock_exponent != 0)

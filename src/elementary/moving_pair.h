@@ -32,6 +32,7 @@ struct Difference {
         norm(std::max(std::max(maxNorm(t0), maxNorm(t1)), kLeastNorm)) {}
 
   Vec at(double t) const {
+    assert(0 <= t && t <= 1);
     if (t == 0) return t0;
     if (t == 1) return t1;
     return (1 - t) * t0 + t * t1;
@@ -45,13 +46,26 @@ struct StepSegment : Segment {
 
 inline StepSegment restrict(const Difference& d, double lo, double hi) {
   assert(0 <= lo && lo <= hi && hi <= 1);
-  return {{d.at(lo), d.at(hi)}, d.norm};
+  const StepSegment out{{d.at(lo), d.at(hi)}, d.norm};
+  // Up to the rounding of three operations.
+  assert(!(maxNorm(out.l) > d.norm * (1 + 8 * kUnit)));
+  assert(!(maxNorm(out.h) > d.norm * (1 + 8 * kUnit)));
+  return out;
+}
+
+/// Whether no coefficient is larger than its size, and its error, allow.
+[[maybe_unused]] inline bool isSizeBound(const MovingCross& n) {
+  const double most = n.size + n.error;
+  return !(maxNorm(n.c0) > most) && !(0.5 * maxNorm(n.c1) > most) &&
+         !(maxNorm(n.c2) > most);
 }
 
 inline MovingCross cross(const StepSegment& a, const StepSegment& b) {
   const double norm = a.norm * b.norm;
   const Segment &of_a = a, &of_b = b;
-  return {cross(of_a, of_b), 2 * norm, kCrossBound * norm};
+  const MovingCross out{cross(of_a, of_b), 2 * norm, kCrossBound * norm};
+  assert(!isInRange(norm) || isSizeBound(out));
+  return out;
 }
 
 /// The volume spanned by u, v, w over an interval, with bounds that follow from norms
@@ -133,6 +147,7 @@ struct MovingPair {
 /// to the nearest point of the other in the middle of [lo, hi]. No other test decides
 /// pairs without a normal (parallel edges, triangles without area).
 inline bool areSeparated(const MovingPair& pair, double lo, double hi) {
+  assert(lo <= hi);
   const Vec d = pair.directionAt(lo + 0.5 * (hi - lo));
   const double size = maxNorm(d);
   for (int i = 0; i < pair.table.num_corners; ++i) {

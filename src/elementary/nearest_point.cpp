@@ -2,6 +2,7 @@
 #include "elementary/nearest_point.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -30,6 +31,7 @@ NearestPoint nearestOnSide(const Vec& p, const Vec& q) {
     near.along = along / length;
     near.point = p + near.along * way;
   }
+  assert(0 <= near.along && near.along <= 1);
   near.square = dot(near.point, near.point);
   return near;
 }
@@ -79,6 +81,7 @@ bool isNearestInside(const Vec* corners, int count, NearestPoint& near, bool& is
     return false;
   near.along = along / square;
   near.across = across / square;
+  assert(near.along <= 1 && near.across <= 1);
   near.point = p + near.along * v + near.across * w;
   near.square = dot(near.point, near.point);
   is_sure = square > kLeastSquare && square > kSliver * (dot(v, v) * dot(w, w));
@@ -122,21 +125,33 @@ NearestPoint findNearest(const DifferencePolygon& polygon, const Vec* corners) {
 DifferencePolygon::DifferencePolygon(ContinuousContactKind kind, const FeaturePoints& x) {
   constexpr int kCorners[] = {3, 4, 0, 2, 1};
   const int corners = kCorners[static_cast<int>(kind)];
+  assert(corners > 0);
   for (int k = 0; k < corners; ++k) {
     const CornerPoints points = pointsOf(kind, k);
     add(x[points.first], x[points.second]);
   }
   // Three squares, two sums and a root: less than 4 units.
   size_ = std::sqrt(size_) * (1 + 0x1p-50);
+  assert(isSizeBound());
+}
+
+/// Whether no coordinate of a corner is above size(), unless squares underflow.
+bool DifferencePolygon::isSizeBound() const {
+  double most = 0;
+  for (int k = 0; k < count_; ++k)
+    most = std::max(most, std::max(maxNorm(t0_[k]), maxNorm(t1_[k])));
+  return most <= size_ || most < kLeastLength;
 }
 
 CornerPoints DifferencePolygon::pointsOf(ContinuousContactKind kind, int corner) {
+  assert(corner >= 0 && corner < kMaxCorners);
   constexpr CornerPoints kEdgeEdge[] = {{0, 2}, {0, 3}, {1, 3}, {1, 2}};
   if (kind == ContinuousContactKind::kEdgeEdge) return kEdgeEdge[corner];
   return {0, 1 + corner};
 }
 
 void DifferencePolygon::add(const VertexPath& from, const VertexPath& to) {
+  assert(count_ < kMaxCorners);
   t0_[count_] = difference(to.t0, from.t0);
   t1_[count_] = difference(to.t1, from.t1);
   size_ = std::max(
@@ -147,6 +162,9 @@ void DifferencePolygon::add(const VertexPath& from, const VertexPath& to) {
 NearestPoint nearestPoint(const DifferencePolygon& polygon, const Vec* corners) {
   NearestPoint near = findNearest(polygon, corners);
   near.distance = std::sqrt(near.square);
+  // Only if all squares overflow, or no coordinate is a number, no point is the nearest.
+  assert(near.square < HUGE_VAL || !(0 < polygon.size() && polygon.size() < HUGE_VAL));
+  assert(near.corner < polygon.count() && near.side < polygon.sides());
   return near;
 }
 

@@ -6,6 +6,9 @@
 #ifndef FCL_CCD_ELEMENTARY_NEAREST_POINT_H
 #define FCL_CCD_ELEMENTARY_NEAREST_POINT_H
 
+#include <cassert>
+#include <cmath>
+
 #include "elementary/feature_points.h"
 #include "numerics/moving_vector.h"
 
@@ -30,10 +33,19 @@ class DifferencePolygon {
   int count() const { return count_; }
   /// @brief The number of sides; a segment has one, a point none.
   int sides() const { return count_ > 2 ? count_ : count_ - 1; }
-  int next(int corner) const { return corner + 1 < count_ ? corner + 1 : 0; }
-  const Vec& t0(int corner) const { return t0_[corner]; }
-  const Vec& t1(int corner) const { return t1_[corner]; }
-  Vec at(int corner, double t) const { return (1 - t) * t0_[corner] + t * t1_[corner]; }
+  int next(int corner) const {
+    assert(isCorner(corner));
+    return corner + 1 < count_ ? corner + 1 : 0;
+  }
+  const Vec& t0(int corner) const {
+    assert(isCorner(corner));
+    return t0_[corner];
+  }
+  const Vec& t1(int corner) const {
+    assert(isCorner(corner));
+    return t1_[corner];
+  }
+  Vec at(int corner, double t) const { return (1 - t) * t0(corner) + t * t1(corner); }
 
   /// @brief Bound on the length of every corner, at every time; not right if squares of
   /// lengths leave the range of double.
@@ -43,6 +55,8 @@ class DifferencePolygon {
   static CornerPoints pointsOf(ContinuousContactKind kind, int corner);
 
  private:
+  bool isCorner(int corner) const { return 0 <= corner && corner < count_; }
+  bool isSizeBound() const;
   void add(const VertexPath& from, const VertexPath& to);
 
   int count_{0};
@@ -64,6 +78,12 @@ struct NearestPoint {
   /// Inside: perpendicular to the polygon.
   Vec normal;
 };
+
+/// @brief Whether n is a unit vector, up to rounding, or zero: no direction was found. A
+/// NaN, of lengths that overflow, is none that proves anything.
+inline bool isDirection(const Vec& n) {
+  return !(std::abs(dot(n, n) - 1) > 0x1p-46) || (n.x == 0 && n.y == 0 && n.z == 0);
+}
 
 /// A polygon with a square of its area below this share of those of its sides is a
 /// sliver: rounding is large there.

@@ -24,6 +24,15 @@ class OrderedPoints {
   OrderedPoints(ContinuousContactKind kind, const Point* const (&points)[4],
                 const PointIds& ids)
       : point{points[0], points[1], points[2], points[3]}, ids_(ids) {
+    putInOrder(kind);
+    assert(isOrdered(kind));
+  }
+
+  const Point* point[4];
+  int number[4]{0, 1, 2, 3};
+
+ private:
+  void putInOrder(ContinuousContactKind kind) {
     switch (kind) {
       case ContinuousContactKind::kVertexFace:
         sort(1, 2);
@@ -43,11 +52,18 @@ class OrderedPoints {
         return;
     }
   }
-
-  const Point* point[4];
-  int number[4]{0, 1, 2, 3};
-
- private:
+  bool isOrdered(ContinuousContactKind kind) const {
+    switch (kind) {
+      case ContinuousContactKind::kVertexFace:
+        return number[0] == 0 && !isBefore(2, 1) && !isBefore(3, 2);
+      case ContinuousContactKind::kEdgeEdge:
+        return !isBefore(1, 0) && !isBefore(3, 2) && compare(0, 2) <= 0;
+      case ContinuousContactKind::kVertexEdge:
+        return number[0] == 0 && !isBefore(2, 1);
+      default:
+        return compare(0, 1) <= 0;
+    }
+  }
   /// Below, at or above 0: point i is before point j, they coincide, or it is after it.
   int compare(int i, int j) const {
     const Point &p = *point[i], &q = *point[j];
@@ -96,6 +112,8 @@ inline void exchangedNumbers(ContinuousContactKind kind, unsigned exchanges,
                                             {1, 0, 3, 2}, {2, 3, 0, 1}, {2, 3, 1, 0},
                                             {3, 2, 0, 1}, {3, 2, 1, 0}};
   assert(exchanges < 8);
+  assert(kind == ContinuousContactKind::kVertexFace ||
+         kind == ContinuousContactKind::kEdgeEdge);
   const auto& numbers =
       (kind == ContinuousContactKind::kVertexFace ? kVertexFace : kEdgeEdge)[exchanges];
   for (int i = 0; i < 4; ++i) number[i] = numbers[i];

@@ -110,7 +110,8 @@ static_assert(hasRightSums(kVertexFaceTable) && hasRightSums(kEdgeEdgeTable), "r
 
 /// @param kind  VF or EE
 inline const PairTable& pairTable(ContinuousContactKind kind) {
-  assert(kind != ContinuousContactKind::kCrossing);
+  assert(kind == ContinuousContactKind::kVertexFace ||
+         kind == ContinuousContactKind::kEdgeEdge);
   return kind == ContinuousContactKind::kVertexFace ? kVertexFaceTable : kEdgeEdgeTable;
 }
 

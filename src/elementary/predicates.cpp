@@ -35,6 +35,7 @@ using ManyDigits =
 /// @param digits  the number of digits of a coordinate
 template <typename Compute>
 int withIntegers(int digits, Compute&& compute) {
+  assert(digits > 0);
   if (digits <= kFewDigits) return compute(FewDigits{0});
   if (digits <= kManyDigits) return compute(ManyDigits{0});
   return compute(mp::cpp_int{0});
@@ -76,6 +77,7 @@ int accurateOrientation(const double (&p)[3], const double (&a)[3], const double
                          kSumBound * size + 0x1p-1060;
   const double bound =
       3.5 * (norms[0] * n_error) + 12 * kSumBound * (norms[0] * size) + 0x1p-1060;
+  assert(bound > 0);
   const double volume = dot(u, n).hi;
   return volume > bound ? 1 : volume < -bound ? -1 : 0;
 }
@@ -173,8 +175,10 @@ int orientation(const double (&p)[3], const double (&a)[3], const double (&b)[3]
     if (u[k] == 0 && v[k] == 0 && w[k] == 0) return 0;
   if (isInRange(v_max * w_max) && isInRange(size)) {
     if (std::abs(volume) > kVolumeBound * size) return volume > 0 ? 1 : -1;
-    if (const int sign = accurateOrientation(p, a, b, c, {u_max, v_max, w_max}))
+    if (const int sign = accurateOrientation(p, a, b, c, {u_max, v_max, w_max})) {
+      assert(sign == exactOrientation(p, a, b, c));
       return sign;
+    }
   }
   return exactOrientation(p, a, b, c);
 }
@@ -193,8 +197,11 @@ int crossSign(const double (&a)[3], const double (&b)[3], const double (&c)[3],
   if (in_range && std::abs(value) > 5 * kUnit * size) return value > 0 ? 1 : -1;
   // If the products cancel, both are near size / 2.
   if (in_range && isExactDifference(b[i], a[i], s) && isExactDifference(d[j], c[j], t) &&
-      isExactDifference(b[j], a[j], u) && isExactDifference(d[i], c[i], v))
-    return compareProducts(s, t, u, v);
+      isExactDifference(b[j], a[j], u) && isExactDifference(d[i], c[i], v)) {
+    const int sign = compareProducts(s, t, u, v);
+    assert(sign == exactCrossSign({a[i], b[i], c[j], d[j], a[j], b[j], c[i], d[i]}));
+    return sign;
+  }
   return exactCrossSign({a[i], b[i], c[j], d[j], a[j], b[j], c[i], d[i]});
 }
 

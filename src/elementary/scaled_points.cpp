@@ -2,6 +2,7 @@
 #include "elementary/scaled_points.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "elementary/nearest_point.h"
@@ -29,6 +30,9 @@ ScaledPoints::ScaledPoints(ContinuousContactKind kind, const FeaturePoints& x,
   // Features that are one point at all times have no size.
   const int shift = size == 0 ? 0 : std::isfinite(size) ? -std::ilogb(size) : -kMostShift;
   scale_ = std::ldexp(1, std::max(-kMostShift, std::min(kMostShift, shift)));
+  // The largest length is about 1, unless the factor is the largest or least one.
+  assert(size == 0 || scale_ == 0x1p1000 || scale_ == 0x1p-1000 ||
+         (1 <= size * scale_ && size * scale_ < 2));
   for (int i = 0; i < 4; ++i) {
     if (!x.point[i]) continue;
     for (int k = 0; k < 3; ++k) {
