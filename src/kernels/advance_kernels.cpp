@@ -10,6 +10,7 @@
 #endif
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 
 #include "base/bits.h"
@@ -164,6 +165,7 @@ class AdvancingPairs {
   /// @param on_way  1 to 8 of the pairs
   FCL_CCD_INLINE void begin(ContinuousContactKind kind, const FourPoints* pairs,
                             const PairOnWay* on_way, std::size_t count) {
+    assert(1 <= count && count <= kEight);
     count_ = count;
     EightPoints eight;
     double time[kEight], rate[kEight], distance[kEight];
@@ -254,11 +256,21 @@ class AdvancingPairs {
       out.part = static_cast<std::uint8_t>(part[lane]);
       out.toc_lo = toc_lo[lane];
       out.toc_hi = toc_hi[lane];
+      assert(out.exchanges < 8 && out.part <= Approach::kInside);
+      assert(out.answer != Approach::Answer::kYes || isBracket(out, request));
     }
     return on_way;
   }
 
  private:
+  /// Whether the bracket of a contact is in the part of the step that is asked for, and
+  /// no wider than wanted.
+  [[maybe_unused]] static bool isBracket(const Approach& contact,
+                                         const DistanceRequest& request) {
+    return 0 <= contact.toc_lo && contact.toc_lo <= contact.toc_hi &&
+           contact.toc_hi <= request.t_max &&
+           contact.toc_hi - contact.toc_lo <= request.toc_err;
+  }
   /// The upper ends of the brackets: setBracket() in distance_advance.cpp.
   FCL_CCD_INLINE Doubles upperEnds(const DistanceRequest& request) {
     const Doubles gap = reached_ - d_,
@@ -337,6 +349,7 @@ class AdvancingPairs {
 /// When fewer eights would do for the pairs that are left, these are put together.
 void approach(ContinuousContactKind kind, const FourPoints* pairs, std::size_t count,
               const DistanceRequest& request, Approach* answers) {
+  assert(1 <= count && count <= kMostApproaching && request.distance >= 0);
   AdvancingPairs eights[kMostApproaching / kEight];
   PairOnWay on_way[kMostApproaching];
   for (std::size_t i = 0; i < count; ++i) on_way[i] = {i, 0, 0, request.distance};
@@ -369,6 +382,7 @@ void approach(ContinuousContactKind kind, const FourPoints* pairs, std::size_t c
     PairOnWay* end = on_way;
     for (std::size_t i = 0; i < size; ++i)
       end = eights[i].takeAnswers(request, answers, end);
+    assert(end == on_way + num_pairs);
   }
 }
 
@@ -396,6 +410,8 @@ struct StartPolygons {
 unsigned approachAtStart(ContinuousContactKind kind, const TrianglePair* pairs,
                          const std::uint32_t* codes, std::size_t count, double distance,
                          double cull_distance, Approach (&answers)[8]) {
+  assert(1 <= count && count <= kEight && distance > 0x1p-150);
+  assert(distance <= cull_distance && cull_distance < 0x1p150);
   // The last one fills up the eight.
   std::uint32_t eight_codes[kEight];
   for (std::size_t lane = 0; lane < kEight; ++lane)
@@ -427,6 +443,8 @@ unsigned approachAtStart(ContinuousContactKind kind, const TrianglePair* pairs,
 
 /// The first attempt of leastDistance(), if it is enough.
 unsigned leastDistances(const EightPoints& pairs, double (&least)[8]) {
+  assert(pairs.kind == ContinuousContactKind::kVertexFace ||
+         pairs.kind == ContinuousContactKind::kEdgeEdge);
   const Points points(pairs);
   const Polygons x(pairs.kind, points.t1, points.t1);
   const NearestPoints near = nearestPoints(x, x.t1);
@@ -436,6 +454,7 @@ unsigned leastDistances(const EightPoints& pairs, double (&least)[8]) {
   store(max(gap * all(1 - LeastDistance::kOfGap) - all(LeastDistance::kOfSize) * x.size,
             all(0)),
         least);
+  assert(*std::min_element(least, least + kEight) >= 0);
   return bits(near.is_sure & (gap > all(LeastDistance::kEnough) * near.distance) &
               (x.size >= all(Advance::kLeastSize)) & (x.size <= all(Advance::kMostSize)));
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Boxes against boxes: of nodes, triangles and features.
+#include <algorithm>
+#include <cassert>
 #include <cfloat>
 #include <limits>
 
@@ -21,8 +23,77 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
+#ifndef NDEBUG
+/// Whether a box contains point i.
+bool contains(const float (&half)[16], const double (&offsets)[3][8], std::size_t i) {
+  const double point[3] = {offsets[0][i], offsets[1][i], offsets[2][i]};
+  double d[8];
+  kdopCoordinates(point, d);
+  for (int j = 0; j < 8; ++j)
+    if (half[j] < -d[j] || half[j + 8] < d[j]) return false;
+  return true;
+}
+
+/// Whether the box and the displacement of a child contain those of a vertex.
+bool contains(const MovingKdopNode& node, int lane, const TreeVertex& x) {
+  const MovingKdop box = node.box(lane);
+  for (int j = 0; j < 16; ++j)
+    if (box.t0.half[j] < x.box.t0.half[j] || box.t1.half[j] < x.box.t1.half[j])
+      return false;
+  return !(node.displacement[lane] < static_cast<float>(x.displacement()));
+}
+
+/// The same for all children of a node below.
+bool contains(const MovingKdopNode& node, int lane, const MovingKdopNode& below) {
+  const MovingKdop box = node.box(lane);
+  for (int i = 0; i < below.count; ++i) {
+    const MovingKdop part = below.box(i);
+    for (int j = 0; j < 16; ++j)
+      if (box.t0.half[j] < part.t0.half[j] || box.t1.half[j] < part.t1.half[j])
+        return false;
+    if (node.displacement[lane] < below.displacement[i]) return false;
+  }
+  return true;
+}
+
+bool containsChildren(const TreeVertex* vertices, const MovingKdopNode* nodes,
+                      const MovingKdopNode& node) {
+  for (int lane = 0; lane < node.count; ++lane) {
+    if (!node.isTriangle(lane)) {
+      if (!contains(node, lane, nodes[node.child[lane]])) return false;
+      continue;
+    }
+    for (const auto& places : node.places)
+      if (!contains(node, lane, vertices[places[lane]])) return false;
+  }
+  return true;
+}
+
+/// Whether the numbers in these lanes are times of the step.
+bool areTimes(const float (&times)[8], unsigned lanes) {
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const float time = times[lowestBit(lanes)];
+    if (!(0 <= time && time <= 1)) return false;
+  }
+  return true;
+}
+
+bool areWindows(const TimeWindow* windows, std::size_t count) {
+  return std::all_of(windows, windows + count, [](const TimeWindow& w) {
+    return 0 <= w.lo && w.lo <= w.hi && w.hi <= 1;
+  });
+}
+
+bool isAscending(const std::uint32_t* codes, std::size_t count) {
+  for (std::size_t i = 1; i < count; ++i)
+    if (codes[i] <= codes[i - 1]) return false;
+  return true;
+}
+#endif
+
 void fitPoints(const double (&offsets)[3][8], int frame, std::size_t count,
                TreeVertex* vertices) {
+  assert((frame == 0 || frame == 1) && 1 <= count && count <= kEight);
   const Doubles x = load<kEight>(offsets[0]), y = load<kEight>(offsets[1]),
                 z = load<kEight>(offsets[2]);
   // As kdopCoordinates().
@@ -45,6 +116,7 @@ void fitPoints(const double (&offsets)[3][8], int frame, std::size_t count,
     float(&half)[16] = frame == 0 ? box.t0.half : box.t1.half;
     store(lower[i], half);
     store(upper[i], half + 8);
+    assert(contains(half, offsets, i));
   }
 }
 
@@ -147,10 +219,12 @@ FCL_CCD_INLINE void fitNodeWhere(const TreeVertex* vertices, const MovingKdopNod
 
 void fitNode(const TreeVertex* vertices, const MovingKdopNode* nodes, bool is_still,
              MovingKdopNode& node, float (&extents)[MovingKdopNode::kWidth]) {
+  assert(0 < node.count && node.count <= MovingKdopNode::kWidth);
   if (is_still)
     fitNodeWhere<true>(vertices, nodes, node, extents);
   else
     fitNodeWhere<false>(vertices, nodes, node, extents);
+  assert(containsChildren(vertices, nodes, node));
 }
 
 /// Makes the windows of boxes smaller, see overlapWindow(). s0 and s1 are the depths
@@ -279,6 +353,7 @@ unsigned overlapChildren(const BoxView& box, const MovingKdopNode& node,
                          float (&earliest)[MovingKdopNode::kWidth]) {
   constexpr std::size_t kInNode = BoxView::kInNode;
   const bool is_single = box.stride == 1;
+  assert(is_single || box.stride == kInNode);
   const auto overlap =
       request.leavesOut()
           ? (box.shift ? (is_single ? &overlapBox<1, true, true>
@@ -289,7 +364,9 @@ unsigned overlapChildren(const BoxView& box, const MovingKdopNode& node,
                                     : &overlapBox<kInNode, true, false>)
                        : (is_single ? &overlapBox<1, false, false>
                                     : &overlapBox<kInNode, false, false>));
-  return overlap(box, node, request, earliest);
+  const unsigned found = overlap(box, node, request, earliest);
+  assert((found & ~node.lanes()) == 0 && areTimes(earliest, found));
+  return found;
 }
 
 /// The triangles of node b that lie in an embedded fan with a triangle of node a.
@@ -309,6 +386,7 @@ FCL_CCD_INLINE unsigned trianglesInFans(const MovingKdopNode& a, std::size_t lan
 template <bool kShifted, bool kLeavesOut>
 FCL_CCD_INLINE void overlapLeaves(const LeafPairing& leaves, LanePairs& out) {
   const MovingKdopNode &a = leaves.a, &b = leaves.b;
+  assert((leaves.lanes & ~a.triangles) == 0);
   // All boxes of a are moved side by side: one by one they would take as long as the
   // comparisons.
   float moved[16][MovingKdopNode::kWidth];
@@ -334,6 +412,7 @@ FCL_CCD_INLINE void overlapLeaves(const LeafPairing& leaves, LanePairs& out) {
       fan_culled += static_cast<unsigned>(countBits(fan));
       left &= ~fan;
     }
+    assert((left & ~b.triangles) == 0 && areTimes(out.earliest[lane], left));
     pairs |= std::uint64_t{left} << (LanePairs::kWidth * lane);
   }
   out.pairs = pairs;
@@ -358,6 +437,7 @@ std::size_t listFeatures(const std::uint16_t* masks, std::size_t count, unsigned
     storeCounted(mask, featureCode(static_cast<std::uint32_t>(i), 0), codes + size);
     size += static_cast<std::size_t>(countBits(mask));
   }
+  assert(isAscending(codes, size));
   return size;
 }
 
@@ -451,6 +531,7 @@ FCL_CCD_INLINE std::size_t cullFeaturesWhere(const TrianglePair* pairs,
       kept += meets >> i & 1U;
     }
   }
+  assert(kept <= count && areWindows(windows, kept));
   return kept;
 }
 
@@ -460,6 +541,8 @@ std::size_t cullFeatures(ContinuousContactKind kind, const TrianglePair* pairs,
                          std::size_t count, TimeWindow* windows) {
   constexpr ContinuousContactKind kVf = ContinuousContactKind::kVertexFace,
                                   kEe = ContinuousContactKind::kEdgeEdge;
+  assert((kind == kVf || kind == kEe) && (gaps || windows));
+  assert(!shift || turned_shift);
   const auto cull =
       kind == kVf
           ? (shift ? &cullFeaturesWhere<kVf, true> : &cullFeaturesWhere<kVf, false>)
@@ -470,6 +553,7 @@ std::size_t cullFeatures(ContinuousContactKind kind, const TrianglePair* pairs,
 std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
                           const KdopShift* turned_shift, std::uint32_t* codes,
                           std::size_t count) {
+  assert(!shift || turned_shift);
   return keepCodes(codes, count, [&](std::uint32_t code) HWY_ATTR {
     const TreeVertex* x[5];
     crossingPoints(pairs, code, x);

@@ -2,6 +2,7 @@
 //
 // The distance filter of eight pairs: a direction that separates them at both ends of
 // their windows.
+#include <cassert>
 #include <cfloat>
 
 #if defined(FCL_CCD_USE_HIGHWAY)
@@ -187,6 +188,7 @@ unsigned mayComeWithin(ContinuousContactKind kind, const TrianglePair* pairs,
                        const std::uint32_t* codes, const TimeWindow* windows,
                        std::size_t count, const DistanceRequest& request,
                        const PairBends& bends) {
+  assert(1 <= count && count <= kEight && request.distance >= 0);
   // The last one fills up the eight.
   std::uint32_t eight_codes[kEight];
   TimeWindow eight_windows[kEight];

@@ -2,6 +2,8 @@
 //
 // The elementary test of eight pairs: coplanarity filter, solve, division of windows; and
 // the crossings of eight edges and faces at t = 0.
+#include <algorithm>
+#include <cassert>
 #include <cfloat>
 
 #if defined(FCL_CCD_USE_HIGHWAY)
@@ -90,6 +92,7 @@ FCL_CCD_INLINE Cubics spannedVolume(const Segments& u, const MovingCrosses& n) {
 EightCoplanarities coplanarity(ContinuousContactKind kind, const TrianglePair* pairs,
                                const std::uint32_t* codes, const TimeWindow* windows,
                                std::size_t count, double latest) {
+  assert(1 <= count && count <= kEight);
   // If there are fewer than eight pairs, the last one is repeated.
   std::uint32_t eight_codes[kEight];
   TimeWindow eight_windows[kEight];
@@ -217,7 +220,28 @@ FCL_CCD_INLINE Doubles root(const Cubics& f, unsigned open, const Doubles& toler
   return x;
 }
 
+#ifndef NDEBUG
+/// Whether the brackets of proved contacts are in their windows, and as narrow as wanted.
+bool areBrackets(const EightAnswers& answers, const EightPairs& x, double toc_err) {
+  for (unsigned yes = answers.yes; yes != 0; yes &= yes - 1) {
+    const int lane = lowestBit(yes);
+    const double lo = answers.toc_lo[lane], hi = answers.toc_hi[lane];
+    if (!(x.lo[lane] <= lo && lo <= hi && hi <= x.hi[lane] && hi - lo <= toc_err))
+      return false;
+  }
+  return true;
+}
+
+/// Whether each window is divided where it begins, ends, or in between.
+bool areInWindows(const double (&times)[8], const EightPairs& x) {
+  for (std::size_t lane = 0; lane < kEight; ++lane)
+    if (!(x.lo[lane] <= times[lane] && times[lane] <= x.hi[lane])) return false;
+  return true;
+}
+#endif
+
 EightAnswers solve(const EightPairs& x, double toc_err) {
+  assert(toc_err > 0);
   const Pairs pairs(x);
   const Doubles lo = load<kEight>(x.lo), hi = load<kEight>(x.hi), width = hi - lo;
   const Segments u = restrict(pairs.difference[kU], lo, hi),
@@ -254,6 +278,7 @@ EightAnswers solve(const EightPairs& x, double toc_err) {
   if (outside != 0) answers.no |= outside & isFree(b, hi);
   store(a, answers.toc_lo);
   store(b, answers.toc_hi);
+  assert((answers.yes & answers.no) == 0 && areBrackets(answers, x, toc_err));
   return answers;
 }
 
@@ -354,9 +379,11 @@ FCL_CCD_INLINE DoubleMask areSeparated(const TrianglePoints& p, const Vectors& d
 
 unsigned areApart(const TrianglePair* pairs, std::size_t count, double share,
                   double distance, float (&gaps)[8]) {
+  assert(1 <= count && count <= kEight && share >= 0 && distance >= 0);
   const TrianglePoints p(pairs, count, &TreeVertex::t0);
   const Doubles bridged = broadcast<kEight>(share) * p.approach();
   store(roundedUp(bridged + bridged, broadcast<kEight>(FLT_MIN)), gaps);
+  assert(*std::min_element(gaps, gaps + kEight) >= 0);
   const DoubleMask apart =
       areSeparated(p, cross(p.x[1], p.x[2]), bridged, distance) |
       areSeparated(p, cross(p.x[4] - p.x[3], p.x[5] - p.x[3]), bridged, distance);
@@ -386,6 +413,8 @@ struct BendRange {
 /// g1 those at both ends of the step and s the least difference of the bends along it.
 unsigned stayApart(const TrianglePair* pairs, std::size_t count, double distance,
                    const PairBends& bends) {
+  assert(1 <= count && count <= kEight);
+  assert(distance > 0 || (distance == 0 && !bends.isAny()));
   const TrianglePoints begin(pairs, count, &TreeVertex::t0),
       end(pairs, count, &TreeVertex::t1);
   const Doubles zero = broadcast<kEight>(0.);
@@ -418,6 +447,7 @@ unsigned stayApart(const TrianglePair* pairs, std::size_t count, double distance
 
 unsigned mayCross(const TrianglePair* pairs, const std::uint32_t* codes,
                   std::size_t count) {
+  assert(1 <= count && count <= kEight);
   const TreeVertex* points[kEight][5];
   for (std::size_t lane = 0; lane < kEight; ++lane)
     // If there are fewer than eight, the last one is repeated.
@@ -480,6 +510,7 @@ EightDivisions divide(const EightPairs& x) {
   out.divisible = bits(f.has_bounds & (abs(f.b0) > f.outer) & (abs(f.b3) > f.outer));
   const Doubles s = nearestToZero(f);
   store(min(hi, lo + s * (hi - lo)), out.at);
+  assert(areInWindows(out.at, x));
   return out;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The proof that fans stay embedded, and that their features stay apart.
+#include <cassert>
+
 #if defined(FCL_CCD_USE_HIGHWAY)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/fan_kernels.cpp"
@@ -235,6 +237,7 @@ FCL_CCD_INLINE unsigned areEmbedded(Fans&& fans, std::size_t count, bool is_clos
 
 unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans,
                          double distance) {
+  assert(fans.count >= (fans.is_closed ? 3U : 2U) && distance >= 0);
   // The ends of an open fan may come near each other through the gap.
   if (distance > 0 && !fans.is_closed) return 0;
   if (fans.count <= VertexFans::kShort)

@@ -271,6 +271,7 @@ HWY_INLINE void storeWhereSet(unsigned mask, const Numbers& numbers, std::uint32
 /// the same place or before it.
 HWY_INLINE void storeSelected(unsigned mask, const std::uint32_t* from,
                               std::uint32_t* to) {
+  assert(to <= from && mask >> kSixteen == 0);
   const auto numbers = [from](auto tag, std::size_t i)
                            HWY_ATTR { return hn::LoadU(tag, from + i); };
   storeWhereSet(mask, numbers, to);
@@ -279,6 +280,7 @@ HWY_INLINE void storeSelected(unsigned mask, const std::uint32_t* from,
 /// Writes first + i for the set bits i of a mask of 16, in ascending order. Up to 16 more
 /// numbers may be written.
 HWY_INLINE void storeCounted(unsigned mask, std::uint32_t first, std::uint32_t* to) {
+  assert(mask >> kSixteen == 0);
   static constexpr std::uint32_t kNumbers[kSixteen] = {0, 1, 2,  3,  4,  5,  6,  7,
                                                        8, 9, 10, 11, 12, 13, 14, 15};
   const auto numbers = [first](auto tag, std::size_t i) HWY_ATTR {

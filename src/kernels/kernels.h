@@ -66,6 +66,7 @@ struct OverlapRequest {
     share = isEarly(latest) ? roundUp(std::max(twice, 0x1p-64), 0.f)
                             : std::numeric_limits<float>::infinity();
     slack = roundUp(twice * pose_displacement, 0.f);
+    assert(!(share < 2 * latest) && slack >= 0);
   }
   bool leavesOut() const { return share <= FLT_MAX; }
 };
@@ -111,6 +112,7 @@ struct TrianglePair {
 /// triangle pair and a bit of feature_pairs.h.
 inline std::uint32_t featureCode(std::uint32_t pair, int bit) {
   assert(bit >= 0 && bit < 16);
+  assert(pair <= std::numeric_limits<std::uint32_t>::max() / 16);
   return 16 * pair + static_cast<std::uint32_t>(bit);
 }
 constexpr std::uint32_t codePair(std::uint32_t code) { return code / 16; }
@@ -120,6 +122,7 @@ constexpr std::uint32_t codeBit(std::uint32_t code) { return code % 16; }
 /// @param code  as of Kernels::cullCrossings()
 inline void crossingPoints(const TrianglePair* pairs, std::uint32_t code,
                            const TreeVertex* (&x)[5]) {
+  assert(codeBit(code) < 6);
   const std::uint32_t on_b = codeBit(code) / 3, k = codeBit(code) % 3;
   const TreeVertex* const* edge = pairs[codePair(code)].x + 3 * on_b;
   const TreeVertex* const* face = pairs[codePair(code)].x + 3 * (1 - on_b);

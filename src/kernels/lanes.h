@@ -8,6 +8,7 @@
 // give the same bits.
 //
 // Included once for each of Highway's targets. So it has no ordinary include guard.
+#include <cassert>
 #include <cmath>
 
 #include "base/bits.h"

@@ -153,11 +153,13 @@ inline Lanes<float, N> narrowed(const Lanes<double, N>& a) {
 }
 
 inline void storeCounted(unsigned mask, std::uint32_t first, std::uint32_t* to) {
+  assert(mask >> kSixteen == 0);
   for (; mask != 0; mask &= mask - 1)
     *to++ = first + static_cast<std::uint32_t>(lowestBit(mask));
 }
 
 inline void storeSelected(unsigned mask, const std::uint32_t* from, std::uint32_t* to) {
+  assert(to <= from && mask >> kSixteen == 0);
   for (; mask != 0; mask &= mask - 1) *to++ = from[lowestBit(mask)];
 }
 

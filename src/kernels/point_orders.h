@@ -3,6 +3,8 @@
 // The points of eight pairs in the order of OrderedPoints.
 //
 // Included once for each of Highway's targets. So it has no ordinary include guard.
+#include <cassert>
+
 #include "elementary/ordered_points.h"
 #include "kernels/eight_features.h"
 #include "kernels/lanes.h"
@@ -30,6 +32,8 @@ class PointOrders {
   /// @tparam AnyPoints  Points or StartPoints
   template <typename AnyPoints>
   FCL_CCD_INLINE PointOrders(ContinuousContactKind kind, AnyPoints& x) {
+    assert(kind == ContinuousContactKind::kVertexFace ||
+           kind == ContinuousContactKind::kEdgeEdge);
     if (kind == ContinuousContactKind::kVertexFace) {
       sort(x, 0, 1, 2);
       sort(x, 1, 2, 3);
@@ -50,6 +54,7 @@ class PointOrders {
   FCL_CCD_INLINE unsigned unknown() const { return unknown_; }
   /// The exchanges of a lane, see exchangedNumbers().
   FCL_CCD_INLINE unsigned exchanges(std::size_t lane) const {
+    assert(lane < kEight);
     return (exchanges_[0] >> lane & 1U) | (exchanges_[1] >> lane & 1U) << 1 |
            (exchanges_[2] >> lane & 1U) << 2;
   }

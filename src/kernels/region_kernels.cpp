@@ -2,6 +2,8 @@
 //
 // The directions in which triangles face, the sides that a point sees of them, and how
 // high they are.
+#include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -75,6 +77,7 @@ FCL_CCD_INLINE void findCorners(const TreeVertex* vertices, const TreeTriangle* 
 
 std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* triangles,
                               std::size_t count) {
+  assert(1 <= count && count <= kEight);
   const TreeVertex* x[3][kEight];
   findCorners(vertices, triangles, count, x);
   const MovingVectors first = loadPaths(x[0]), v = loadPaths(x[1]) - first,
@@ -187,6 +190,7 @@ FCL_CCD_INLINE void takeLeast(const Sights& x, const Doubles& most, LeastSight& 
   const DoubleMask is_known = volume > all(0);
   const auto take = [&is_known](const Doubles& bound, double(&least)[kEight]) HWY_ATTR {
     store(min(load<kEight>(least), select(is_known, bound, all(0))), least);
+    assert(*std::min_element(least, least + kEight) >= 0);
   };
   take(square / largestSquare(normal, all(4) * rounding), sight.distance_square);
   take(square / sines, sight.sine_square);
@@ -197,6 +201,7 @@ FCL_CCD_INLINE EightViews viewFromHere(const TreeVertex& point, const double (&r
                                        const TreeVertex* vertices,
                                        const TreeTriangle* triangles, std::size_t count,
                                        LeastSight* least) {
+  assert(1 <= count && count <= kEight);
   const TreeVertex* x[3][kEight];
   findCorners(vertices, triangles, count, x);
   const MovingVectors center = {vectorsOf(point.t0), vectorsOf(point.t1)};
@@ -226,6 +231,7 @@ FCL_CCD_INLINE EightViews viewFromHere(const TreeVertex& point, const double (&r
                  above = bits((a > bound) | (b > bound) | (c > bound));
   views.missed = bits(isInRange(ray_size) & isInRange(most * most)) &
                  ((views.left & below) | (views.right & above));
+  assert((views.left & views.right) == 0 && views.left + views.right < 1U << count);
   return views;
 }
 
@@ -238,6 +244,7 @@ EightViews viewFrom(const TreeVertex& point, const double (&ray)[3],
 
 std::uint32_t lowCorners(const TreeVertex* vertices, const MovingKdopNode& node,
                          const int (&direction)[3], double distance) {
+  assert(node.triangles != 0 && distance >= 0);
   const TreeVertex* x[3][kEight];
   const auto first = static_cast<std::size_t>(lowestBit(node.triangles));
   for (std::size_t i = 0; i < kEight; ++i)
