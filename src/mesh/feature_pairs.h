@@ -94,6 +94,9 @@ inline FeaturePair featurePair(int bit) {
 
 /// @brief The number of a pair: the inverse of featurePair().
 inline int pairNumber(const FeaturePair& pair) {
+  assert(pair.first < 3 &&
+         (pair.kind == ContinuousContactKind::kVertexFace ||
+          (pair.kind == ContinuousContactKind::kEdgeEdge && pair.second < 3)));
   if (pair.kind == ContinuousContactKind::kEdgeEdge)
     return static_cast<int>(kNumVertexFacePairs + 3 * pair.first + pair.second);
   return static_cast<int>(pair.first_on_a ? pair.first : 3 + pair.first);
@@ -108,11 +111,13 @@ constexpr unsigned char kFeaturePoints[kNumFeaturePairs + 1][4] = {
 
 /// @brief Edges (three bits) that end in one of the vertices (three bits).
 inline unsigned edgesAt(unsigned vertices) {
+  assert(vertices < 8);
   return vertices | (vertices >> 1) | (vertices << 2 & 4U);
 }
 
 /// @brief Bits 3 i + j for bit i of rows and bit j of columns.
 constexpr unsigned product(unsigned rows, unsigned columns) {
+  assert(rows < 8 && columns < 8);
   return ((rows & 1U) | (rows & 2U) << 2 | (rows & 4U) << 4) * columns;
 }
 
@@ -178,6 +183,7 @@ inline unsigned wantedPairs(unsigned owned_a, unsigned owned_b, bool at_distance
 
 /// @brief The pairs of features of two triangles that share a vertex (sharedVertices()).
 inline unsigned pairsAt(unsigned shared) {
+  assert(shared < 1U << 9);
   unsigned pairs = 0;
   for (; shared != 0; shared &= shared - 1) {
     const unsigned bit = static_cast<unsigned>(lowestBit(shared));
@@ -195,6 +201,7 @@ inline unsigned ownedEdges(unsigned owned_a, unsigned owned_b) {
 
 /// @brief The edges of two triangles that have a vertex of the other one.
 inline unsigned edgesAtBoth(unsigned shared) {
+  assert(shared < 1U << 9);
   const unsigned of_a =
       (shared & 7U ? 1U : 0U) | (shared & 070U ? 2U : 0U) | (shared & 0700U ? 4U : 0U);
   const unsigned of_b = (shared | shared >> 3 | shared >> 6) & 7U;

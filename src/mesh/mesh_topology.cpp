@@ -2,6 +2,7 @@
 #include "mesh/mesh_topology.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "mesh/vertex_corners.h"
 
@@ -31,6 +32,8 @@ std::size_t findOutOfRange(TriangleArray triangles, std::size_t num_triangles,
 std::vector<MeshTriangle> assignFeatures(TriangleArray triangles,
                                          std::size_t num_triangles,
                                          std::size_t num_vertices) {
+  assert(findTooMany(num_triangles, num_vertices).empty() &&
+         findOutOfRange(triangles, num_triangles, num_vertices) == 3 * num_triangles);
   std::vector<TreeTriangle> all(num_triangles);
   for (std::size_t i = 0; i < num_triangles; ++i) {
     all[i].index = static_cast<std::uint32_t>(i);

@@ -30,6 +30,14 @@ struct alignas(64) Kdop16 {
   float half[16];
 };
 
+/// @brief Whether each direction has its upper bound above its lower one, or at it. False
+/// for a NaN.
+inline bool isOrdered(const Kdop16& box) {
+  for (int j = 0; j < 8; ++j)
+    if (!(box.half[j] + box.half[j + 8] >= 0)) return false;
+  return true;
+}
+
 /// @brief The box at t = 0 and the box at t = 1.
 struct MovingKdop {
   Kdop16 t0;
@@ -55,6 +63,16 @@ inline void kdopCoordinates(const T (&p)[3], T (&d)[8]) {
   d[5] = p[1] + p[2];
   d[6] = p[0] - p[1];
   d[7] = p[0] - p[2];
+}
+
+/// @brief Whether a box contains a point, given relative to its origin. Coordinates that
+/// are no numbers do not count.
+inline bool containsPoint(const Kdop16& box, const double (&p)[3]) {
+  double d[8];
+  kdopCoordinates(p, d);
+  for (int j = 0; j < 8; ++j)
+    if (-d[j] > double{box.half[j]} || d[j] > double{box.half[j + 8]}) return false;
+  return true;
 }
 
 /// Relative outward step for a float made from a double: the conversion loses 2^-24
@@ -126,6 +144,7 @@ inline TimeWindow overlapWindow(const MovingKdop& a, const MovingKdop& b,
       a1 = shifted(a1, shift->t1.half[j]);
     }
     const float s0 = a0 + b.t0.half[j ^ 8], s1 = a1 + b.t1.half[j ^ 8];
+    assert(s0 == s0 && s1 == s1);  // no NaN: no half-axis is below kLeastHalf
     if (s0 < 0 && s1 < 0) return {1.f, 0.f};
     if (s0 >= 0 && s1 >= 0) continue;
     const float least = std::min(s0, s1), most = std::max(s0, s1);

@@ -46,7 +46,10 @@ struct alignas(64) MovingKdopNode {
   }
 
   /// @brief Lanes that are in use, a bit each.
-  unsigned lanes() const { return (1U << count) - 1; }
+  unsigned lanes() const {
+    assert(count > 0 && count <= kWidth);
+    return (1U << count) - 1;
+  }
 
   /// @brief Sets `triangles`. Call it when the children are set.
   void markTriangles() {
@@ -70,6 +73,7 @@ struct alignas(64) MovingKdopNode {
     }
   }
   MovingKdop box(int lane) const {
+    assert(lane >= 0 && lane < kWidth);
     MovingKdop out;
     for (int r = 0; r < 16; ++r) {
       out.t0.half[halfAxis(r)] = t0[r][lane];
@@ -79,11 +83,35 @@ struct alignas(64) MovingKdopNode {
   }
   /// @brief Fills the lanes that are not in use with boxes that overlap nothing.
   void clearRest() {
+    assert(count >= 0 && count <= kWidth);
     for (int i = count; i < kWidth; ++i) {
       child[i] = 0;
       displacement[i] = 0;
       for (int r = 0; r < 16; ++r) t0[r][i] = t1[r][i] = kLeastHalf;
     }
+  }
+
+  /// @brief Whether the boxes and displacements are such that a traversal can compare
+  /// them: no NaN, no half-axis below kLeastHalf, and nothing in lanes not in use.
+  bool isComparable() const {
+    for (int lane = 0; lane < kWidth; ++lane) {
+      if (!(displacement[lane] >= 0)) return false;
+      for (int r = 0; r < 16; ++r) {
+        if (!(t0[r][lane] >= kLeastHalf && t1[r][lane] >= kLeastHalf)) return false;
+        if (lane >= count && (t0[r][lane] > kLeastHalf || t1[r][lane] > kLeastHalf))
+          return false;
+      }
+    }
+    return true;
+  }
+
+  /// @brief Whether the boxes of a child, and the bound on its motion, contain others.
+  bool contains(int lane, const MovingKdop& other, double moved) const {
+    const MovingKdop own = box(lane);
+    for (int j = 0; j < 16; ++j)
+      if (other.t0.half[j] > own.t0.half[j] || other.t1.half[j] > own.t1.half[j])
+        return false;
+    return !(moved > double{displacement[lane]});
   }
 };
 

@@ -2,6 +2,7 @@
 #include "mesh/triangle_soup.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 
 #include "mesh/mesh_triangle.h"
@@ -45,6 +46,7 @@ bool isTriangleSoup(TriangleArray triangles, std::size_t num_triangles,
 
 bool isTriangleSoup(const std::vector<TreeTriangle>& triangles, std::size_t num_vertices,
                     std::size_t num_free) {
+  assert(num_free <= triangles.size());
   return standAlone(triangles.size(), num_free, num_vertices,
                     [&](std::uint32_t i, std::uint32_t(&ids)[3]) {
                       std::copy(triangles[i].place, triangles[i].place + 3, ids);

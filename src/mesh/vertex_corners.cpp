@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstring>
 
 #include "base/bits.h"
@@ -20,12 +21,39 @@ constexpr std::size_t kBlock = 2048;
 /// Not a vertex.
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
+#ifndef NDEBUG
+
+/// Whether corners are in the order that CornersAtVertex says.
+bool areInFanOrder(const Corner* corners, std::uint32_t count,
+                   CornersAtVertex::Kind kind) {
+  if (kind == CornersAtVertex::kNoFan) return true;
+  for (std::uint32_t i = 1; i < count; ++i)
+    if (corners[i].next != corners[i - 1].last) return false;
+  const bool ends_at_begin = corners[count - 1].last == corners[0].next;
+  return kind == CornersAtVertex::kClosedFan ? count >= 3 && ends_at_begin
+                                             : !ends_at_begin;
+}
+
+/// Whether each vertex that has corners is owned by one of the triangles.
+bool ownEachVertexOnce(const VertexCorners& corners,
+                       const std::vector<TreeTriangle>& triangles) {
+  std::vector<int> owners(corners.size(), 0);
+  for (const TreeTriangle& t : triangles)
+    for (int k = 0; k < 3; ++k) owners[t.place[k]] += (t.owned >> k & 1U) != 0;
+  for (std::size_t v = 0; v < owners.size(); ++v)
+    if (owners[v] != (corners[v].count > 0)) return false;
+  return true;
+}
+
+#endif
+
 /// Sorts corners into the order of a fan if they form one: each begins where the one
 /// before ends.
 /// @param count  1 ... 4 * kQuads
 template <std::uint32_t kQuads>
 CornersAtVertex::Kind sortIntoFan(Corner* corners, std::uint32_t count) {
   constexpr std::uint32_t kWidth = 4 * kQuads;
+  assert(count > 0 && count <= kWidth);
   std::uint32_t last[kWidth];
   std::fill(last, last + kWidth, kNone);
   for (std::uint32_t i = 0; i < count; ++i) last[i] = corners[i].last;
@@ -105,9 +133,11 @@ CornersAtVertex::Kind sortIntoLongFan(Corner* corners, std::uint32_t count) {
 /// Sorts the corners at a vertex.
 CornersAtVertex::Kind sortCorners(Corner* corners, std::uint32_t count) {
   if (count == 0) return CornersAtVertex::kNoFan;
-  if (count <= 8) return sortIntoFan<2>(corners, count);
-  if (count <= 16) return sortIntoFan<4>(corners, count);
-  return sortIntoLongFan(corners, count);
+  const CornersAtVertex::Kind kind = count <= 8    ? sortIntoFan<2>(corners, count)
+                                     : count <= 16 ? sortIntoFan<4>(corners, count)
+                                                   : sortIntoLongFan(corners, count);
+  assert(areInFanOrder(corners, count, kind));
+  return kind;
 }
 
 /// The features at a vertex that the triangle of each corner owns: the vertex, and the
@@ -120,6 +150,7 @@ class Owned {
   /// In a fan every face occurs once. Every edge is in two triangles that follow each
   /// other, or at an end of the fan.
   void ofFan(bool is_closed) const {
+    assert(count_ >= (is_closed ? 3U : 1U));
     const Corner* lowest = corners_;
     std::uint32_t before = is_closed ? lastEdge(corners_[count_ - 1]) : kNone;
     const std::uint32_t end = is_closed ? nextEdge(corners_[0]) : kNone;
@@ -182,9 +213,13 @@ class Owned {
 VertexCorners::VertexCorners(const std::vector<TreeTriangle>& triangles,
                              std::size_t num_vertices, int num_threads)
     : first_(num_vertices + 2, 0), corners_(3 * triangles.size()), kinds_(num_vertices) {
+  assert(triangles.size() <= kMaxMeshSize && num_vertices <= kMaxMeshSize);
   // While corners are stored, first_[v + 1] is the place of the next corner of v.
   for (const TreeTriangle& t : triangles)
-    for (const std::uint32_t v : t.place) ++first_[v + 2];
+    for (const std::uint32_t v : t.place) {
+      assert(v < num_vertices && t.index < kMaxMeshSize);
+      ++first_[v + 2];
+    }
   for (std::size_t v = 0; v < num_vertices; ++v) first_[v + 2] += first_[v + 1];
   for (std::uint32_t i = 0; i < triangles.size(); ++i) {
     const TreeTriangle& t = triangles[i];
@@ -192,6 +227,7 @@ VertexCorners::VertexCorners(const std::vector<TreeTriangle>& triangles,
       corners_[first_[t.place[k] + 1]++] = {t.place[(k + 1) % 3], t.place[(k + 2) % 3],
                                             4 * t.index + k, 4 * i + k};
   }
+  assert(first_[0] == 0 && first_[num_vertices] == corners_.size());
   parallelForBlocks(
       num_vertices, kBlock, num_threads, [&](std::size_t v, std::size_t last) {
         for (; v < last; ++v)
@@ -219,8 +255,10 @@ void assignOwners(const VertexCorners& corners, int num_threads,
                       for (; i < last; ++i) {
                         const std::uint8_t* at = &owned[4 * i];
                         triangles[i].owned = std::uint32_t{at[0]} | at[1] | at[2];
+                        assert(triangles[i].owned <= kOwnsAll);
                       }
                     });
+  assert(ownEachVertexOnce(corners, triangles));
 }
 
 }  // namespace deformable

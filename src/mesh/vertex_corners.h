@@ -49,7 +49,7 @@ class VertexCorners {
   std::size_t size() const { return kinds_.size(); }
 
   CornersAtVertex operator[](std::size_t place) const {
-    assert(place < size());
+    assert(place < size() && first_[place] <= first_[place + 1]);
     return {corners_.data() + first_[place], first_[place + 1] - first_[place],
             kinds_[place]};
   }

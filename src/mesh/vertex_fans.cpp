@@ -54,6 +54,7 @@ VertexFans::VertexFans(const VertexFans& before,
                        const VertexCorners& corners)
     : first_(corners.size() + 1), closed_(corners.size()) {
   constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  assert(old_places.size() == corners.size() && new_places.size() == before.size());
   std::uint32_t num_spokes = 0;
   for (std::size_t v = 0; v < corners.size(); ++v) {
     const bool is_new = old_places[v] == kNone;
@@ -72,7 +73,10 @@ VertexFans::VertexFans(const VertexFans& before,
       continue;
     }
     const VertexFan fan = before[old_places[v]];
-    for (std::uint32_t i = 0; i < fan.count; ++i) to[i] = new_places[fan.spokes[i]];
+    for (std::uint32_t i = 0; i < fan.count; ++i) {
+      to[i] = new_places[fan.spokes[i]];
+      assert(to[i] < corners.size());  // known for the neighbours of unchanged vertices
+    }
   }
 }
 
@@ -82,12 +86,14 @@ void VertexFans::renumber(const VertexFans& before,
   std::uint32_t num_spokes = 0;
   assert(new_places.size() == size() && old_places.size() == size());
   for (std::size_t i = 0; i < old_places.size(); ++i) {
+    assert(new_places[old_places[i]] == i);
     const VertexFan fan = before[old_places[i]];
     first_[i] = num_spokes;
     closed_[i] = fan.is_closed;
     for (std::uint32_t k = 0; k < fan.count; ++k)
       spokes_[num_spokes++] = new_places[fan.spokes[k]];
   }
+  assert(num_spokes == spokes_.size());
 }
 
 }  // namespace deformable

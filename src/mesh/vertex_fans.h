@@ -66,6 +66,8 @@ class VertexFans {
   VertexFan operator[](std::size_t place) const {
     assert(place < size());
     const std::uint32_t first = first_[place];
+    assert(first <= first_[place + 1] && first_[place + 1] - first <= longest_);
+    assert(!closed_[place] || first_[place + 1] - first >= 3);
     return {spokes_.data() + first, first_[place + 1] - first, closed_[place] != 0};
   }
 

@@ -98,6 +98,7 @@ class VertexFrames {
 
   /// @brief Prefetches vertex i.
   void prefetch(std::size_t i) const {
+    assert(i < count_);
     for (int frame = 0; frame < 2; ++frame) {
       if (double_[frame])
         prefetchMemory(double_[frame] + 3 * i);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <functional>
 #include <unordered_map>
@@ -19,6 +20,7 @@ Position positionOf(const S* coordinates, std::size_t vertex) {
   Position p;
   for (std::size_t k = 0; k < 3; ++k)
     p[k] = static_cast<double>(coordinates[3 * vertex + k]);
+  assert(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]));
   return p;
 }
 
@@ -98,6 +100,8 @@ bool VertexWeld::refine(const S* coordinates) {
     });
     if (joined == own) heads[cell].push_back(own);
     map_[i] = joined;
+    // What others are joined to is joined to none, and has the least number of them.
+    assert(joined <= own && map_[static_cast<std::size_t>(joined)] == joined);
     changed = true;
   }
   return changed;

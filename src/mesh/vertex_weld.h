@@ -2,6 +2,8 @@
 #ifndef FCL_CCD_MESH_VERTEX_WELD_H
 #define FCL_CCD_MESH_VERTEX_WELD_H
 
+#include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -15,7 +17,9 @@ namespace deformable {
 class VertexWeld {
  public:
   /// @param eps  finite and not negative
-  VertexWeld(std::size_t num_vertices, double eps) : eps_(eps), map_(num_vertices, 0) {}
+  VertexWeld(std::size_t num_vertices, double eps) : eps_(eps), map_(num_vertices, 0) {
+    assert(eps >= 0 && std::isfinite(eps));
+  }
 
   /// @brief Separates joined vertices that do not coincide in a frame. Those that leave a
   /// vertex are joined to each other where they coincide in this frame. With eps > 0 they
