@@ -94,9 +94,7 @@ inline FeaturePair featurePair(int bit) {
 
 /// @brief The number of a pair: the inverse of featurePair().
 inline int pairNumber(const FeaturePair& pair) {
-  assert(pair.first < 3 &&
-         (pair.kind == ContinuousContactKind::kVertexFace ||
-          (pair.kind == ContinuousContactKind::kEdgeEdge && pair.second < 3)));
+  assert(pair.first < 3 && pair.second < 3);
   if (pair.kind == ContinuousContactKind::kEdgeEdge)
     return static_cast<int>(kNumVertexFacePairs + 3 * pair.first + pair.second);
   return static_cast<int>(pair.first_on_a ? pair.first : 3 + pair.first);

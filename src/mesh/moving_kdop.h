@@ -83,6 +83,11 @@ constexpr float kOutward = 0x1p-22f;
 /// infinity.
 constexpr float kLeastHalf = -0.5f * FLT_MAX;
 
+/// @brief Whether all half-axes are such that sums of two are no NaNs.
+inline bool isValid(const Kdop16& box) {
+  return std::all_of(box.half, box.half + 16, [](float x) { return x >= kLeastHalf; });
+}
+
 /// @brief A float that is not less than value + pad, except for 2^-22 of the pad; pad >=
 /// 0. FLT_MIN keeps it right where a float would be subnormal. Infinity for a NaN; never
 /// below kLeastHalf.

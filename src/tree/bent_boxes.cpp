@@ -2,6 +2,7 @@
 #include "tree/bent_boxes.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -22,8 +23,10 @@ Float4 outward(const Float4& change) {
 /// Adds to four half-axes, as shifted(). The sum is not below kLeastHalf, since a
 /// half-axis is not.
 void move(const Float4& by, float* half) {
-  const Float4 sum = load(half) + by;
+  const Float4 before = load(half), sum = before + by;
+  assert(!isAny((before < kLeastHalf) | (before != before) | (by < 0.f)));
   store(sum + abs(sum) * kOutward, half);
+  assert(!isAny(load(half) < before));  // a box is only enlarged
 }
 
 /// The bend of a point in the middle of its straight path.

@@ -2,12 +2,37 @@
 #include "tree/border_finder.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 
+#ifndef NDEBUG
+
+namespace {
+
+/// Whether edges of a path follow each other, and each path ends where an edge begins.
+bool isLinked(const RegionBorder& border) {
+  std::vector<std::uint32_t> begins;
+  for (std::size_t i = 0; i < border.size(); ++i) begins.push_back(border.from(i));
+  std::sort(begins.begin(), begins.end());
+  for (std::size_t i = 0, path = 0; i < border.size(); ++i) {
+    const bool is_first = path < border.paths.size() && border.paths[path] == i;
+    path += is_first;
+    if (!is_first && (i == 0 || border.to(i - 1) != border.from(i))) return false;
+    if (!std::binary_search(begins.begin(), begins.end(), border.to(i))) return false;
+  }
+  return !border.is_one_loop ||
+         (border.paths.size() == 1 && border.to(border.size() - 1) == border.from(0));
+}
+
+}  // namespace
+
+#endif
+
 RegionBorder BorderFinder::find(const Region& region) {
+  assert(region.first < region.last && region.first_place <= region.last_place);
   listEdges(region);
   return cancelOpposites() && linkPaths() ? border() : RegionBorder();
 }
@@ -17,8 +42,10 @@ RegionBorder BorderFinder::find(const Region& region) {
 void BorderFinder::listEdges(const Region& region) {
   counts_.assign(region.last_place - region.first_place, 0);
   for (std::uint32_t i = region.first; i < region.last; ++i)
-    for (const std::uint32_t place : tree_.triangles()[i].place)
+    for (const std::uint32_t place : tree_.triangles()[i].place) {
+      assert(place < region.last_place);
       if (place >= region.first_place) ++counts_[place - region.first_place];
+    }
   for (std::uint32_t v = region.first_place; v < region.last_place; ++v) {
     const VertexFan fan = tree_.fans()[v];
     std::uint32_t& count = counts_[v - region.first_place];
@@ -35,6 +62,7 @@ void BorderFinder::listEdges(const Region& region) {
       const int next = (k + 1) % 3;
       if (!(outer[k] && outer[next])) continue;
       const std::uint64_t low = std::min(v[k], v[next]), high = std::max(v[k], v[next]);
+      assert(high < std::uint64_t{1} << 31);
       keys_.push_back(low << 32 | high << 1 | std::uint64_t{v[k] > v[next]});
     }
   }
@@ -107,6 +135,7 @@ RegionBorder BorderFinder::border() const {
   }
   border.paths = paths_;
   border.is_one_loop = is_one_loop_;
+  assert(border.size() == edges_.size() && isLinked(border));
   return border;
 }
 

@@ -38,6 +38,7 @@ void forEachPart(const MovingKdopTree& tree, std::int32_t parent, std::uint32_t 
   for (int lane = node.count; lane-- > 0;) {
     if (node.isTriangle(lane)) continue;
     const std::uint32_t first = tree.firstTriangle(node.child[lane]);
+    assert(first < last);
     if (last - first >= least_triangles) visit(node.child[lane], last);
     last = first;
   }

@@ -2,6 +2,7 @@
 #include "tree/box_position.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cfloat>
 #include <cmath>
 #include <limits>
@@ -28,6 +29,8 @@ Float4 roundUp(Double2 a, Double2 b, float pad) {
 }  // namespace
 
 void fitPoint(const double* point, const double (&origin)[3], float pad, Kdop16& out) {
+  // Of a point that is no number it may be none.
+  assert(!(pad < 0));
   double d[8];
   kdopCoordinates({point[0] - origin[0], point[1] - origin[1], point[2] - origin[2]}, d);
   for (int j = 0; j < 8; j += 4) {
@@ -35,9 +38,12 @@ void fitPoint(const double* point, const double (&origin)[3], float pad, Kdop16&
     store(roundUp(-a, -b, pad), out.half + j);
     store(roundUp(a, b, pad), out.half + j + 8);
   }
+  assert(isOrdered(out) && containsPoint(out, {point[0] - origin[0], point[1] - origin[1],
+                                               point[2] - origin[2]}));
 }
 
 KdopShift relativeShift(const BoxPosition& a, const BoxPosition& b) {
+  assert(a.largest_coordinate >= 0 && b.largest_coordinate >= 0);
   KdopShift shift;
   for (int frame = 0; frame < 2; ++frame) {
     const double(&origin_a)[3] = a.origin[frame], (&origin_b)[3] = b.origin[frame];
@@ -59,6 +65,7 @@ KdopShift relativeShift(const BoxPosition& a, const BoxPosition& b) {
       out.half[j] = roundUp(-d[j], pad);
       out.half[j + 8] = roundUp(d[j], pad);
     }
+    assert(isOrdered(out) && containsPoint(out, offset));
   }
   return shift;
 }

@@ -43,7 +43,10 @@ std::vector<std::size_t> groupItems(std::vector<std::uint32_t> component_of,
                                     UninitializedVector<TreeItem>& items) {
   assert(component_of.size() == items.size());
   std::vector<std::uint32_t> size(num_components, 0);
-  for (const std::uint32_t i : component_of) ++size[i];
+  for (const std::uint32_t i : component_of) {
+    assert(i < num_components);
+    ++size[i];
+  }
   // Group 0 has all small components.
   std::vector<Group> groups(1);
   for (std::uint32_t& s : size) {
@@ -68,6 +71,7 @@ std::vector<std::size_t> groupItems(std::vector<std::uint32_t> component_of,
     next[i] = end;
     ends.push_back(end += groups[i].count);
   }
+  assert(end == items.size());
   UninitializedVector<TreeItem> grouped(items.size());
   forEachRun(group_of, [&](std::uint32_t group, std::size_t first, std::size_t last) {
     std::size_t& to = next[group];

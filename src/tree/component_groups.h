@@ -5,6 +5,7 @@
 #define FCL_CCD_TREE_COMPONENT_GROUPS_H
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -36,12 +37,16 @@ std::vector<std::uint32_t> findComponents(std::size_t num_vertices,
   for (std::size_t i = 0; i < num_triangles; ++i) {
     std::uint32_t v[3];
     verticesOf(i, v);
+    assert(std::max({v[0], v[1], v[2]}) < num_vertices);
     if (parent[v[0]] == parent[v[1]] && parent[v[0]] == parent[v[2]]) continue;
     const std::uint32_t a = find(v[0]), b = find(v[1]), c = find(v[2]);
     parent[a] = parent[b] = parent[c] = std::min(a, std::min(b, c));
   }
   // A parent comes before its children.
-  for (std::uint32_t& p : parent) p = parent[p];
+  for (std::uint32_t& p : parent) {
+    p = parent[p];
+    assert(parent[p] == p && p <= static_cast<std::size_t>(&p - parent.data()));
+  }
   return parent;
 }
 

@@ -14,6 +14,7 @@ std::vector<OpenItems> splitRange(Splitter& splitter, const OpenItems& root,
   while (!open.empty()) {
     const OpenItems o = open.back();
     open.pop_back();
+    assert(o.node < nodes.size() && o.first_leaf + o.range.count <= leaves.size());
     if (o.range.count <= max_left) {
       left.push_back(o);
       continue;
@@ -38,6 +39,7 @@ std::vector<OpenItems> splitRange(Splitter& splitter, const OpenItems& root,
       leaf += parts[i].count;
       nodes.emplace_back();
     }
+    assert(leaf == o.first_leaf + o.range.count);
     std::reverse(open.end() - static_cast<std::ptrdiff_t>(nodes.size() - num_nodes),
                  open.end());
     nodes[o.node] = node;
@@ -55,6 +57,7 @@ TreeStructure splitItems(UninitializedVector<TreeItem> items,
   std::vector<TreeChildren> nodes(1);
   splitRange(splitter, {{0, count}, 0, 0, depth}, 0, max_parts, nodes, tree.leaves);
   tree.nodes.assign(nodes.begin(), nodes.end());
+  assert(isInWalkOrder(tree));
   return tree;
 }
 

@@ -54,6 +54,7 @@ class SplitSlabs {
  public:
   SplitSlabs(const TreeItem* items, std::size_t count, std::size_t stride, int num_slabs)
       : last_(num_slabs - 1) {
+    assert(count > 0 && stride > 0 && num_slabs > 0);
     // Four bounds, each of every fourth item: with a single one each minimum would wait
     // for the previous one.
     Bounds of[4];
@@ -78,12 +79,14 @@ class SplitSlabs {
 
   /// The slab of one of the items that were used.
   int operator()(const TreeItem& item) const {
+    assert(coordinate(item) >= 0);  // not below the least of the items that were used
     return std::min(static_cast<int>(coordinate(item)), last_);
   }
 
   /// Whether an item lies before a slab. The slab is not the first one, and not beyond
   /// the last one.
   bool isBefore(const TreeItem& item, int slab) const {
+    assert(slab > 0 && slab <= last_);
     return coordinate(item) < static_cast<float>(slab);
   }
 
@@ -126,10 +129,12 @@ class Splitter {
     assert(all.count > 0 && all.first + all.count <= items_.size() && max_parts > 0);
     max_parts = std::min(max_parts, kWidth);
     std::size_t n = splitGroups(all, max_parts, out);
+    assert(n <= max_parts && followEachOther(all, out, n));
     if (n > 1) return n;
     if (all.count <= max_parts) {
       for (; n < all.count; ++n) out[n] = {all.first + n, 1};
       out[0].count = 1;
+      assert(followEachOther(all, out, n));
       return n;
     }
     const bool by_area = all.count > kMaxHalved && depth < kMaxAreaDepth;
@@ -143,16 +148,28 @@ class Splitter {
       const ItemRange r = *largest;
       if (r.count <= (by_area ? 1 : unit)) break;
       const std::size_t first = by_area ? splitByArea(r) : splitInUnits(r, unit);
+      assert(first > 0 && first < r.count);
       *largest = {r.first, first};
       out[n++] = {r.first + first, r.count - first};
     }
     // Sorted by the order of the items: neighbours in the tree are neighbours in memory.
     std::sort(out, out + n,
               [](const ItemRange& a, const ItemRange& b) { return a.first < b.first; });
+    assert(followEachOther(all, out, n));
     return n;
   }
 
  private:
+  /// Whether parts follow each other from the beginning of a range to its end. None is
+  /// empty.
+  [[maybe_unused]] static bool followEachOther(ItemRange all, const ItemRange* parts,
+                                               std::size_t n) {
+    std::size_t end = all.first;
+    for (std::size_t i = 0; i < n; end += parts[i++].count)
+      if (parts[i].first != end || parts[i].count == 0) return false;
+    return end == all.first + all.count;
+  }
+
   /// As split(), but between groups. A range within one group is not split.
   std::size_t splitGroups(ItemRange all, std::size_t max_parts,
                           ItemRange (&out)[MovingKdopNode::kWidth]) const {
@@ -218,10 +235,13 @@ class Splitter {
     std::size_t before = 0;
     int slab = 0;
     for (; before + count[slab] <= first; ++slab) before += count[slab];
-    if (slab > 0) partition(r, slabs, slab);
+    assert(slab < kSlabs);
+    [[maybe_unused]] const std::size_t moved = slab > 0 ? partition(r, slabs, slab) : 0;
+    assert(moved == before && before <= first);
     if (before == first) return;
     ItemRange rest{r.first + before, r.count - before};
     if (slab + 1 < kSlabs) rest.count = partition(rest, slabs, slab + 1);
+    assert(first - before < rest.count);
     TreeItem* items = items_.data() + rest.first;
     std::nth_element(items, items + (first - before), items + rest.count,
                      [axis = slabs.axis()](const TreeItem& a, const TreeItem& b) {

@@ -3,6 +3,7 @@
 #define FCL_CCD_TREE_MESH_INSTANCE_H
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 
@@ -64,6 +65,7 @@ struct MeshInstance {
             size, std::abs(translation[frame][k]) +
                       std::abs(tree ? tree->origin(frame)[k] : rigid.origin(frame)[k]));
     }
+    assert(moved >= 0 && size >= 0);
     return moved + 0x1p-46 * size;
   }
 };

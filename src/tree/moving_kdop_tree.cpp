@@ -74,11 +74,16 @@ void MovingKdopTree::markFreeLeaves() {
     for ([[maybe_unused]] const std::uint32_t place : triangle.place)
       assert(fans_[place].count == 0);
   }
+  assert(std::count_if(triangles_.begin(), triangles_.end(), [](const TreeTriangle& t) {
+           return (t.owned & kFreeLeaf) != 0;
+         }) == static_cast<std::ptrdiff_t>(free_.count()));
 }
 
 void MovingKdopTree::build(TriangleArray triangles, std::size_t num_triangles,
                            std::size_t num_vertices,
                            const std::vector<std::int32_t>& links, int num_threads) {
+  assert(num_triangles > 0 && !links.empty() &&
+         findOutOfRange(triangles, num_triangles, num_vertices) == 3 * num_triangles);
   const auto children = [&links](std::int32_t link, std::size_t) {
     std::int32_t nodes[kWidth];
     TreeChildren out{};
@@ -91,6 +96,15 @@ void MovingKdopTree::build(TriangleArray triangles, std::size_t num_triangles,
   free_ = {};
 }
 
+/// Whether arrays about the same things have the same sizes.
+bool MovingKdopTree::isConsistent() const {
+  return !nodes_.empty() && nodes_.size() == sizes_.size() &&
+         nodes_.size() == first_sizes_.size() &&
+         nodes_.size() == first_triangles_.size() && !vertices_.empty() &&
+         vertices_.size() == vertex_ids_.size() && vertices_.size() == fans_.size() &&
+         region_borders_;
+}
+
 /// Takes over a structure, and finds fans and owners.
 void MovingKdopTree::arrange(const TreeStructure& structure, TriangleArray triangles,
                              std::size_t num_vertices, int num_threads) {
@@ -100,12 +114,14 @@ void MovingKdopTree::arrange(const TreeStructure& structure, TriangleArray trian
   const VertexCorners corners(triangles_, vertex_ids_.size(), num_threads);
   fans_ = VertexFans(corners, num_threads);
   assignOwners(corners, num_threads, triangles_);
+  assert(isConsistent());
 }
 
 /// Takes over the triangles of a structure, and gives the vertices their places.
 void MovingKdopTree::assignPlaces(const TreeStructure& structure, TriangleArray triangles,
                                   std::size_t num_vertices, int num_threads) {
   const std::vector<std::uint32_t>& leaves = structure.leaves;
+  assert(isInWalkOrder(structure) && isPermutation(leaves));
   triangles_.resize(leaves.size());
   parallelForBlocks(leaves.size(), kTriangleBlock, num_threads,
                     [&](std::size_t i, std::size_t last) {
@@ -139,11 +155,14 @@ void MovingKdopTree::become(MovingKdopTree&& next,
                             const TreeStructure& structure) noexcept {
   if (next.nodes_.capacity() == 0) next.nodes_ = std::move(nodes_);
   if (next.vertices_.capacity() == 0) next.vertices_ = std::move(vertices_);
+  assert(next.nodes_.capacity() >= structure.nodes.size() &&
+         next.vertices_.capacity() >= next.vertex_ids_.size());
   next.nodes_.resize(structure.nodes.size());
   next.vertices_.resize(next.vertex_ids_.size());
   for (std::size_t i = 0; i < structure.nodes.size(); ++i)
     next.setNode(structure.nodes[i], next.nodes_[i]);
   *this = std::move(next);
+  assert(isConsistent());
 }
 
 /// Finds the first triangle of each node, and the largest parts of the tree that are
@@ -164,6 +183,7 @@ void MovingKdopTree::findSubtrees(const TreeStructure& structure) {
     for (int k = 0; k < nodes[i].count; ++k)
       if (isNode(child[k])) size[i] += size[static_cast<std::size_t>(child[k])];
   }
+  assert(size[0] == nodes.size() && first_triangles_[0] == 0);
   top_.clear();
   subtrees_.clear();
   std::vector<std::uint32_t> open{0};
@@ -184,6 +204,9 @@ void MovingKdopTree::findSubtrees(const TreeStructure& structure) {
     if (size[i] > 1) subtree.first_node = static_cast<std::uint32_t>(*first);
     subtree.last_node = subtree.first_node + size[i] - 1;
     subtree.first_triangle = first_triangles_[i];
+    assert(
+        subtree.last_node <= nodes.size() &&
+        (subtrees_.empty() || subtrees_.back().first_triangle < subtree.first_triangle));
     subtrees_.push_back(subtree);
   }
 }
@@ -207,6 +230,7 @@ void MovingKdopTree::placeVertices(std::size_t num_vertices) {
       if (i % kPlacesBlock == 0) places_before_[i / kPlacesBlock] = num_places;
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t id = triangles_[i].id[k];
+        assert(id < num_vertices);
         std::uint32_t& place = place_of[id];
         // No branch: it would be unpredictable.
         const bool is_new = place == kNoPlace;
@@ -218,6 +242,7 @@ void MovingKdopTree::placeVertices(std::size_t num_vertices) {
     }
     subtrees_[s].last_vertex = num_places;
   }
+  assert(i == triangles_.size() && num_places <= num_vertices);
   vertex_ids_.resize(num_places);
 }
 
@@ -228,6 +253,7 @@ std::uint32_t MovingKdopTree::placesBefore(std::size_t i) const {
   for (std::size_t k = i / kPlacesBlock * kPlacesBlock; k < i; ++k)
     for (const std::uint32_t place : triangles_[k].place)
       count = std::max(count, place + 1);
+  assert(count <= vertices_.size());
   return count;
 }
 
@@ -256,6 +282,8 @@ void MovingKdopTree::setNode(const TreeChildren& from, MovingKdopNode& node) con
   node.markTriangles();
   for (int lane = 0; lane < kWidth; ++lane) {
     const bool is_triangle = (node.triangles >> lane & 1U) != 0;
+    assert(!is_triangle ||
+           static_cast<std::size_t>(node.triangle(lane)) < triangles_.size());
     for (int k = 0; k < 3; ++k)
       node.places[k][lane] =
           is_triangle ? triangles_[static_cast<std::size_t>(node.triangle(lane))].place[k]
@@ -324,14 +352,52 @@ void MovingKdopTree::setLargestCoordinate(const CoordinateBounds& bounds) {
                                               origin_[frame][k] - bounds.lo[frame][k]));
 }
 
+#ifndef NDEBUG
+
+namespace {
+
+/// Whether the boxes of vertices contain both ends of their ways, and are ordered.
+bool containBothEnds(const TreeVertex* vertices, std::size_t count,
+                     const double (&offsets)[2][3][8]) {
+  for (std::size_t i = 0; i < count; ++i)
+    for (int frame = 0; frame < 2; ++frame) {
+      const double(&x)[3][8] = offsets[frame];
+      const Kdop16& box = frame == 0 ? vertices[i].box.t0 : vertices[i].box.t1;
+      if (!isOrdered(box) || !containsPoint(box, {x[0][i], x[1][i], x[2][i]}))
+        return false;
+    }
+  return true;
+}
+
+/// Whether a child of a node contains what is below it: three vertices, or boxes.
+bool containsBelow(const MovingKdopNode& node, int lane,
+                   const UninitializedVector<MovingKdopNode>& nodes,
+                   const UninitializedVector<TreeVertex>& vertices) {
+  if (node.isTriangle(lane))
+    return std::all_of(node.places, node.places + 3, [&](const auto& places) {
+      const TreeVertex& vertex = vertices[places[lane]];
+      return node.contains(lane, vertex.box, vertex.displacement());
+    });
+  const MovingKdopNode& child = nodes[static_cast<std::size_t>(node.child[lane])];
+  for (int k = 0; k < child.count; ++k)
+    if (!node.contains(lane, child.box(k), double{child.displacement[k]})) return false;
+  return true;
+}
+
+}  // namespace
+
+#endif
+
 /// Sets the boxes of a node. Those of its children are set.
 void MovingKdopTree::refit(MovingKdopNode& node, bool is_still) {
   float extents[kWidth];
   kernels().fitNode(vertices_.data(), nodes_.data(), is_still, node, extents);
+  assert(node.isComparable());
   NodeSize& size = sizes_[static_cast<std::size_t>(&node - nodes_.data())];
   size.triangles = 0;
   size.blurred = 0;
   for (int lane = 0; lane < node.count; ++lane) {
+    assert(containsBelow(node, lane, nodes_, vertices_));
     if (node.isTriangle(lane)) {
       size.triangles += extents[lane];
       size.blurred += !(extents[lane] >= blur_ && extents[lane] <= FLT_MAX);
@@ -369,6 +435,7 @@ void MovingKdopTree::fitVertices(const Subtree& subtree, const VertexFrames& fra
       kernel.fitPoints(offsets[1], 1, count, vertices);
     else
       for (std::size_t i = 0; i < count; ++i) vertices[i].box.t1 = vertices[i].box.t0;
+    assert(containBothEnds(vertices, count, offsets));
   }
 }
 
@@ -385,7 +452,7 @@ void MovingKdopTree::refit(const Subtree& subtree, bool is_still) {
 /// because a vertex flies off or the whole mesh jumps, these floats are mostly rounding.
 /// Then the origin moves to the median of the vertices.
 void MovingKdopTree::refit(const VertexFrames& frames, int num_threads) {
-  assert(!nodes_.empty() && vertices_.size() == vertex_ids_.size());
+  assert(isConsistent());
   assert(*std::max_element(vertex_ids_.begin(), vertex_ids_.end()) < frames.size());
   const CoordinateBounds bounds = boundsOf(frames, num_threads);
   for (int k = 0; k < 3; ++k)
@@ -398,6 +465,7 @@ void MovingKdopTree::refit(const VertexFrames& frames, int num_threads) {
   blur_ = roundUp(largest_coordinate_ * 0x1p-13, 0.f);
   fit(frames, num_threads);
   // A free point has no extent: it tells nothing about the rounding.
+  assert(sizes_[0].blurred <= triangles_.size());
   const std::size_t num_points = free_.points;
   if (sizes_[0].blurred - num_points <= (triangles_.size() - num_points) / 2) return;
   for (int frame = 0; frame < 2; ++frame)

@@ -84,6 +84,7 @@ class MovingKdopTree {
 
   /// @brief The first of the triangles below node i. They follow each other.
   std::uint32_t firstTriangle(int i) const {
+    assert(i >= 0 && static_cast<std::size_t>(i) < first_triangles_.size());
     return first_triangles_[static_cast<std::size_t>(i)];
   }
 
@@ -137,6 +138,7 @@ class MovingKdopTree {
   static TreeStructure walk(std::int32_t root, const std::vector<TreeChildren>& nodes,
                             const std::vector<NodeSize>& sizes, std::size_t num_leaves,
                             std::vector<NodeSize>& first_sizes);
+  bool isConsistent() const;
   void adopt(const Restructuring& restructuring);
   void markFreeLeaves();
   void arrange(const TreeStructure& structure, TriangleArray triangles,

@@ -2,6 +2,8 @@
 #ifndef FCL_CCD_TREE_OPEN_BINARY_H
 #define FCL_CCD_TREE_OPEN_BINARY_H
 
+#include <algorithm>
+#include <cassert>
 #include <cstdint>
 
 #include "mesh/tree_nodes.h"
@@ -35,6 +37,9 @@ int openBinary(std::int32_t i, std::int32_t (&nodes)[MovingKdopNode::kWidth],
     const std::int32_t left = link(nodes[k]);
     children[k] = left < 0 ? left : nodes[k];
   }
+  assert(
+      n == MovingKdopNode::kWidth ||
+      std::all_of(children, children + n, [](std::int32_t child) { return child < 0; }));
   return n;
 }
 

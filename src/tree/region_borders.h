@@ -30,8 +30,14 @@ struct RegionBorder {
   bool is_one_loop{false};
 
   std::size_t size() const { return begins.size(); }
-  std::uint32_t from(std::size_t edge) const { return points[begins[edge]]; }
-  std::uint32_t to(std::size_t edge) const { return points[begins[edge] + 1]; }
+  std::uint32_t from(std::size_t edge) const {
+    assert(edge < begins.size() && begins[edge] < points.size());
+    return points[begins[edge]];
+  }
+  std::uint32_t to(std::size_t edge) const {
+    assert(edge < begins.size() && begins[edge] + 1 < points.size());
+    return points[begins[edge] + 1];
+  }
 };
 
 /// @brief A node whose triangles are a closed surface, and the end of its triangles.
@@ -66,6 +72,7 @@ class RegionBorders {
 
   /// @pre of() has been called for this node
   const RegionBorder& known(std::int32_t node) const {
+    assert(node >= 0 && static_cast<std::size_t>(node) < borders_.size());
     const RegionBorder* border =
         borders_[static_cast<std::size_t>(node)].load(std::memory_order_acquire);
     assert(border);

@@ -85,6 +85,7 @@ void fitBoxes(const EightBoxes& boxes, float (&rows)[16][MovingKdopNode::kWidth]
 RigidTree::RigidTree(const VolumeTree& volumes, const Pose& beginning, const Pose& end)
     : volumes_(volumes),
       turns_(!std::equal(beginning.rotation, beginning.rotation + 9, end.rotation)) {
+  assert(volumes.reader.boxes && volumes.reader.stride >= sizeof(int) && slack() >= 0);
   OrientedBox whole;
   orientedBox(0, whole);
   is_rotated_ = !beginning.isTranslation() || !end.isTranslation();
@@ -105,6 +106,7 @@ RigidTree::RigidTree(const VolumeTree& volumes, const Pose& beginning, const Pos
   }
   for (int k = 0; k < 3; ++k) size += std::abs(whole.center[k]) + whole.extent[k];
   size *= 1 + 2 * slack();
+  assert(largest_coordinate_ >= 0 && square >= 0);
   displacement_ = roundUp(std::sqrt(square) * size, 0.f);
 }
 
@@ -198,6 +200,37 @@ void RigidTree::setRows(const std::int32_t (&nodes)[kWidth], MovingKdopNode& out
     roundOutward(20 * kFloatUnit, rows);
   }
   if (!turns_) std::memcpy(out.t1, out.t0, sizeof(out.t0));
+  for (int lane = 0; lane < kWidth; ++lane)
+    assert(containsBox(0, lane, nodes[lane], out) &&
+           containsBox(1, lane, nodes[lane], out));
+}
+
+/// Whether rows that were computed in floats contain an oriented box, by doubles. These
+/// round by less than 2^-40 of the numbers. What is not finite does not count.
+bool RigidTree::containsBox(int frame, int lane, int node,
+                            const MovingKdopNode& rows) const {
+  OrientedBox box;
+  orientedBox(node, box, frame);
+  double center[3], along_center[8], spread[8] = {}, size = 0;
+  for (int k = 0; k < 3; ++k) {
+    center[k] = box.center[k] - origin_[frame][k];
+    size += std::abs(box.center[k]) + std::abs(origin_[frame][k]);
+  }
+  kdopCoordinates(center, along_center);
+  for (int i = 0; i < 3; ++i) {
+    double along[8];
+    kdopCoordinates(box.axis[i], along);
+    for (int j = 0; j < 8; ++j) spread[j] += std::abs(along[j]) * box.extent[i];
+  }
+  size += spread[0] + spread[1] + spread[2];
+  const auto& half = frame == 0 ? rows.t0 : rows.t1;
+  for (int j = 0; j < 8; ++j) {
+    const double reach = spread[j] - 0x1p-40 * size;
+    if (reach - along_center[j] > double{half[2 * j][lane]} ||
+        reach + along_center[j] > double{half[2 * j + 1][lane]})
+      return false;
+  }
+  return true;
 }
 
 /// Pads rows whose half-axes are set: by `rounding`, relative to the sum of the
@@ -237,6 +270,7 @@ void RigidTree::open(int i, MovingKdopNode& out) const {
   if (bent_boxes_) bent_boxes_->enlarge(out);
   std::fill(out.displacement, out.displacement + kWidth, displacement_);
   out.clearRest();
+  assert(out.isComparable());
 }
 
 MovingKdop RigidTree::box(int node) const {

@@ -91,6 +91,7 @@ class RigidTree {
 
   void setRows(const std::int32_t (&nodes)[kWidth], MovingKdopNode& out) const;
   void roundOutward(float rounding, float (&rows)[16][kWidth]) const;
+  bool containsBox(int frame, int lane, int node, const MovingKdopNode& rows) const;
   void rotate(int frame, OrientedBox& box) const;
 
   VolumeTree volumes_;

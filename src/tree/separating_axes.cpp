@@ -44,6 +44,7 @@ SeparatingAxes::SeparatingAxes(const MeshInstance& a, const MeshInstance& b,
       b_(b.rigid),
       distance_(distance * (1 + 0x1p-40)),
       are_oriented_(a_.isOriented() || b_.isOriented()) {
+  assert(!a.tree && !b.tree && distance >= 0);
   for (int frame = 0; frame < 2; ++frame) {
     for (int k = 0; k < 3; ++k)
       translation_[frame][k] = b.translation[frame][k] - a.translation[frame][k];
@@ -67,6 +68,7 @@ bool SeparatingAxes::areApart(int i, int j) const {
     to[k] = between + translation_[1][k];
   }
   const double pad = padOf(sizeOf(a) + sizeOf(b));
+  assert(!(pad < 0));
   const auto isSeparating = [&](const double(&axis)[3]) {
     // The length of an axis is at most size(axis).
     const double depth =

@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_TREE_SEPARATING_AXES_H
 #define FCL_CCD_TREE_SEPARATING_AXES_H
 
+#include <cassert>
 #include <cstdint>
 #include <cstring>
 
@@ -92,6 +93,7 @@ class AxisTrials {
                                                                     : record.pause);
       record.wait = record.pause;
     }
+    assert(record.credit <= kMostCredit + 1 && record.pause <= kLongestPause);
   }
 
  private:

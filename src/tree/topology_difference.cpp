@@ -16,6 +16,18 @@ void match(std::uint32_t& x, std::uint32_t y) {
   x = x == TopologyDifference::kNone || x == y ? y : kSeveral;
 }
 
+#ifndef NDEBUG
+/// Whether the place of each vertex that is the same has the id of this vertex.
+bool areMutual(const std::vector<std::uint32_t>& vertices,
+               const std::vector<std::uint32_t>& new_ids) {
+  for (std::uint32_t id = 0; id < vertices.size(); ++id)
+    if (vertices[id] != TopologyDifference::kNone &&
+        (vertices[id] >= new_ids.size() || new_ids[vertices[id]] != id))
+      return false;
+  return true;
+}
+#endif
+
 }  // namespace
 
 TopologyDifference::TopologyDifference(const std::vector<TreeTriangle>& before,
@@ -27,6 +39,7 @@ TopologyDifference::TopologyDifference(const std::vector<TreeTriangle>& before,
   findOrigins(before, num_triangles, origins);
   findVertices(before, triangles);
   dropTriangles(before, triangles);
+  assert(areMutual(vertices_, new_ids_));
 }
 
 /// A triangle is not the same if a triangle with a lower number has the same origin, or
@@ -36,7 +49,10 @@ void TopologyDifference::findOrigins(const std::vector<TreeTriangle>& before,
                                      const std::vector<int>& origins) {
   assert(origins.empty() || origins.size() == num_triangles);
   std::vector<std::uint32_t> places(before.size());
-  for (std::uint32_t i = 0; i < before.size(); ++i) places[before[i].index] = i;
+  for (std::uint32_t i = 0; i < before.size(); ++i) {
+    assert(before[i].index < before.size());
+    places[before[i].index] = i;
+  }
   origins_.resize(num_triangles);
   is_same_.assign(num_triangles, 0);
   stays_.assign(before.size(), 0);
@@ -44,6 +60,7 @@ void TopologyDifference::findOrigins(const std::vector<TreeTriangle>& before,
   for (std::size_t i = 0; i < num_triangles; ++i) {
     const int number = static_cast<int>(i);
     const int origin = !origins.empty() ? origins[i] : i < before.size() ? number : -1;
+    assert(origin < 0 || static_cast<std::size_t>(origin) < before.size());
     origins_[i] = origin < 0 ? kNone : places[static_cast<std::size_t>(origin)];
     if (origin <= last) continue;
     last = origin;
@@ -60,6 +77,7 @@ void TopologyDifference::findVertices(const std::vector<TreeTriangle>& before,
     triangles.copyIds(i, ids);
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t place = before[origins_[i]].place[k];
+      assert(place < new_ids_.size() && ids[k] < vertices_.size());
       match(new_ids_[place], ids[k]);
       match(vertices_[ids[k]], place);
     }

@@ -3,11 +3,13 @@
 // How a moving tree follows a mesh whose triangles differ from those of the previous
 // step.
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "mesh/mesh_topology.h"
 #include "mesh/vertex_corners.h"
 #include "tree/moving_kdop_tree.h"
 #include "tree/topology_difference.h"
@@ -67,6 +69,7 @@ Entry* splitEntries(Entry* first, Entry* last) {
   for (std::size_t i = count; i-- > 1;)
     cost[i] += after.add(first[i]) * static_cast<float>(count - i);
   const auto least = static_cast<std::ptrdiff_t>((count + 3) / 4);
+  assert(least < static_cast<std::ptrdiff_t>(count) - least);
   return first +
          (std::min_element(cost.begin() + least, cost.end() - least) - cost.begin());
 }
@@ -156,6 +159,7 @@ class MovingKdopTree::TopologyUpdate {
         least = distance;
       }
       if (node.isTriangle(nearest)) return i;
+      assert(node.child[nearest] > i);
       i = node.child[nearest];
     }
   }
@@ -181,6 +185,7 @@ class MovingKdopTree::TopologyUpdate {
     }
     counts_.assign(first_.begin() + 1, first_.end());
     for (std::size_t i = 0; i < num_nodes; ++i) first_[i + 1] += first_[i];
+    assert(first_[num_nodes] == origins.size());
     // Children come after their parents.
     for (std::size_t i = num_nodes; i-- > 0;) {
       const MovingKdopNode& node = tree_.nodes_[i];
@@ -188,6 +193,7 @@ class MovingKdopTree::TopologyUpdate {
         if (!node.isTriangle(lane))
           counts_[i] += counts_[static_cast<std::size_t>(node.child[lane])];
     }
+    assert(counts_[0] == origins.size());
     hung_.resize(origins.size());
     std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
     for (std::size_t i = 0; i < origins.size(); ++i)
@@ -210,6 +216,7 @@ class MovingKdopTree::TopologyUpdate {
       for (int lane = 0; lane < node.count; ++lane)
         if (!node.isTriangle(lane)) addParts(node, lane);
     }
+    assert(!entries_.empty());
     const bool is_one_node = entries_.size() == 1 && entries_[0].child >= 0;
     std::int32_t& part = parts_[static_cast<std::size_t>(i)];
     if (is_one_node) {
@@ -260,6 +267,7 @@ class MovingKdopTree::TopologyUpdate {
       return;
     }
     const std::int32_t first = parts_[static_cast<std::size_t>(child)];
+    assert(first != kNoPart);
     const bool is_one = next_part_[static_cast<std::size_t>(first)] == kNoPart;
     for (std::int32_t part = first; part != kNoPart;) {
       const auto k = static_cast<std::size_t>(part);
@@ -276,6 +284,7 @@ class MovingKdopTree::TopologyUpdate {
   std::int32_t group(Entry* first, Entry* last, std::int32_t next,
                      const NodeSize& first_size) {
     const auto count = static_cast<std::size_t>(last - first);
+    assert(count > 0);
     if (count > kChildren) {
       Entry* middle = splitEntries(first, last);
       return group(first, middle, group(middle, last, next, {}), {});
@@ -330,6 +339,8 @@ class MovingKdopTree::TopologyUpdate {
 void MovingKdopTree::changeTopology(TriangleArray triangles, std::size_t num_triangles,
                                     const std::vector<int>& origins,
                                     const VertexFrames& frames, int num_threads) {
+  assert(isConsistent() && free_.count() == 0 && num_triangles > 0 &&
+         findOutOfRange(triangles, num_triangles, frames.size()) == 3 * num_triangles);
   const TopologyDifference difference(triangles_, vertex_ids_.size(), triangles,
                                       num_triangles, frames.size(), origins);
   MovingKdopTree next;
@@ -340,6 +351,22 @@ void MovingKdopTree::changeTopology(TriangleArray triangles, std::size_t num_tri
   next.takeMemory(*this, structure);
   become(std::move(next), structure);
 }
+
+#ifndef NDEBUG
+
+namespace {
+
+/// Whether the vertices of a triangle had the places of another triangle's vertices.
+bool areAtOldPlaces(const TreeTriangle& t, const std::vector<std::uint32_t>& old_places,
+                    const TreeTriangle& origin) {
+  return std::equal(
+      t.place, t.place + 3, origin.place,
+      [&](std::uint32_t now, std::uint32_t before) { return old_places[now] == before; });
+}
+
+}  // namespace
+
+#endif
 
 /// Takes over the fans and owners that are the same. Finds the others among the triangles
 /// around them.
@@ -365,6 +392,7 @@ void MovingKdopTree::inherit(const MovingKdopTree& before,
     });
     const std::uint32_t origin = difference.origins()[t.index];
     t.owned = origin == kNone ? 0 : before.triangles_[origin].owned;
+    assert(!is_same || areAtOldPlaces(t, old_places, before.triangles_[origin]));
     if (is_same) continue;
     changed.push_back(t);
     places.push_back(i);
@@ -381,6 +409,7 @@ void MovingKdopTree::inherit(const MovingKdopTree& before,
     const unsigned edges = found & (found >> 1 | found << 2);
     const unsigned mask = found | edges << 3 | unsigned{found == 7} << 6;
     t.owned = (t.owned & ~mask) | (changed[i].owned & mask);
+    assert(t.owned <= kOwnsAll);
   }
 }
 

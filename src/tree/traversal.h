@@ -47,6 +47,8 @@ class WorkList {
 
   void add(std::int32_t parent, int lane, std::int32_t node, bool swapped,
            float earliest) {
+    assert(parent >= 0 && node >= 0 && lane >= -1 && lane < MovingKdopNode::kWidth);
+    assert(0 <= earliest && earliest <= 1);
     if (size_ == items_.size()) grow();
     NodePair& work = items_[size_++];
     work.parent = parent;
@@ -121,6 +123,7 @@ class Traversal {
   /// @pre there was a shift
   void setShift(const KdopShift& shift) {
     assert(is_shifted_);
+    assert(isValid(shift.t0) && isValid(shift.t1));
     // The shift of a box of tree b is the same, with opposite half-axes exchanged.
     for (int r = 0; r < 16; ++r) {
       const int j = MovingKdopNode::halfAxis(r);
@@ -224,6 +227,7 @@ class Traversal {
   void compare(const MovingKdopNode& parent, std::int32_t i, int lane,
                const MovingKdopNode& node, std::int32_t j, unsigned lanes, WorkList& open,
                Visit& visit) {
+    assert(lane >= 0 && lane < parent.count);
     const bool is_triangle = parent.isTriangle(lane);
     const unsigned triangles = node.triangles;
     if (is_triangle) {
@@ -237,6 +241,7 @@ class Traversal {
     pairs_.compared += static_cast<std::uint64_t>(node.count);
     float earliest[MovingKdopNode::kWidth];
     unsigned left = kernels_.overlapChildren(box, node, request_, earliest) & lanes;
+    assert((left & ~node.lanes()) == 0);
     if (left == 0) return;
     // `parent` is not used after this, so a reader may replace it by its child.
     const std::int32_t mine = parent.child[lane];
@@ -290,6 +295,8 @@ class Traversal {
       const int i = pair / MovingKdopNode::kWidth, j = pair % MovingKdopNode::kWidth;
       const int x = mine.triangle(i), y = theirs.triangle(j);
       const float earliest = pairs_.earliest[i][j];
+      assert(0 <= earliest && earliest <= 1);
+      assert(!kSelf || x != y);
       kSwapped ? visit(y, x, earliest) : visit(x, y, earliest);
     }
   }

@@ -2,6 +2,7 @@
 #include "tree/tree_builder.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 
@@ -18,6 +19,7 @@ namespace {
 void findMiddle(TriangleArray triangles, std::size_t num_triangles,
                 const VertexFrames& frames, double (&middle)[3]) {
   constexpr std::size_t kSample = 31;
+  assert(num_triangles > 0);
   double x[3][kSample];
   for (std::size_t i = 0; i < kSample; ++i) {
     std::uint32_t v[3];
@@ -57,6 +59,7 @@ UninitializedVector<TreeItem> itemsOf(TriangleArray triangles, std::size_t num_t
         for (; i < last; ++i) {
           std::uint32_t v[3];
           triangles.copyIds(i, v);
+          assert(std::max({v[0], v[1], v[2]}) < points.size());
           const Float4 sum = points[v[0]] + points[v[1]] + points[v[2]];
           items[i] = {{sum[0], sum[1], sum[2]}, static_cast<std::uint32_t>(i)};
         }
@@ -70,6 +73,7 @@ std::vector<std::uint32_t> componentsOf(TriangleArray triangles,
                                         std::size_t num_triangles,
                                         std::size_t num_vertices,
                                         const FreeLeaves& free) {
+  assert(free.count() <= num_triangles);
   const std::size_t num_faces = num_triangles - free.count();
   const std::vector<std::uint32_t> component_of = findComponents(
       num_vertices, num_faces,
@@ -146,6 +150,7 @@ TreeStructure splitTriangles(TriangleArray triangles, std::size_t num_triangles,
     }
     ++num_met;
   }
+  assert(num_met == roots.size() && next == num_nodes && isInWalkOrder(tree));
   return tree;
 }
 

@@ -2,6 +2,7 @@
 //
 // Which parts of a moving tree have aged, and how they are rebuilt.
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <limits>
 #include <new>
@@ -94,6 +95,7 @@ class MovingKdopTree::Restructuring {
   }
   void append(std::size_t to, std::int32_t child) {
     TreeChildren& node = nodes_[to];
+    assert(node.count < MovingKdopNode::kWidth);
     node.child[node.count++] = child;
   }
 
@@ -142,6 +144,7 @@ class MovingKdopTree::Restructuring {
 
   /// Appends the items to a node, in at most `max_parts` parts.
   void split(std::size_t to, std::size_t max_parts, int depth) {
+    assert(!names_.empty() && items_.size() == names_.size());
     std::vector<std::uint32_t> components(names_.size());
     std::transform(names_.begin(), names_.end(), components.begin(),
                    [this](std::int32_t name) { return componentOf(name); });
@@ -158,6 +161,7 @@ class MovingKdopTree::Restructuring {
                    kLeastComponent / MovingKdopNode::kWidth, items_);
     const TreeStructure tree = splitItems(items_, std::move(ends), max_parts, depth);
     const auto& parts = tree.nodes;
+    assert(static_cast<std::size_t>(parts[0].count) <= max_parts);
     std::vector<std::size_t> number_of_part(parts.size(), to);
     // Children come after their parents.
     for (std::size_t i = 0; i < parts.size(); ++i)
@@ -198,6 +202,7 @@ TreeStructure MovingKdopTree::walk(std::int32_t root,
   const auto children = [&](std::int32_t i, std::size_t number) {
     // A walk begins with 0.
     const auto from = static_cast<std::size_t>(number == 0 ? root : i);
+    assert(from < nodes.size() && number < first_sizes.size());
     first_sizes[number] = sizes[from];
     return nodes[from];
   };
@@ -207,6 +212,7 @@ TreeStructure MovingKdopTree::walk(std::int32_t root,
 }
 
 bool MovingKdopTree::restructure() {
+  assert(isConsistent());
   double now = 0, expected = 0;
   for (std::size_t i = 1; i < sizes_.size(); ++i) {
     if (first_sizes_[i].triangles == 0) first_sizes_[i] = sizes_[i];
@@ -227,6 +233,7 @@ bool MovingKdopTree::restructure() {
 void MovingKdopTree::adopt(const Restructuring& restructuring) {
   MovingKdopTree next;
   const TreeStructure structure = restructuring.structure(next.first_sizes_);
+  assert(structure.leaves.size() == triangles_.size() && isPermutation(structure.leaves));
   next.free_ = free_;
   next.triangles_.resize(triangles_.size());
   for (std::size_t i = 0; i < triangles_.size(); ++i)
@@ -236,11 +243,13 @@ void MovingKdopTree::adopt(const Restructuring& restructuring) {
       1 + *std::max_element(vertex_ids_.begin(), vertex_ids_.end());
   next.placeVertices(num_ids);
   const std::size_t count = vertex_ids_.size();
+  assert(next.vertex_ids_.size() == count);
   std::vector<std::uint32_t> place_of(num_ids), new_places(count), old_places(count);
   for (std::size_t i = 0; i < count; ++i)
     place_of[next.vertex_ids_[i]] = static_cast<std::uint32_t>(i);
   for (std::size_t i = 0; i < count; ++i) {
     new_places[i] = place_of[vertex_ids_[i]];
+    assert(next.vertex_ids_[new_places[i]] == vertex_ids_[i]);
     old_places[new_places[i]] = static_cast<std::uint32_t>(i);
   }
   const VertexFans fans = fans_;

@@ -32,6 +32,37 @@ struct TreeStructure {
   std::vector<std::uint32_t> leaves;
 };
 
+/// @brief Whether nodes and leaves have the numbers that TreeStructure says, and each
+/// occurs once.
+inline bool isInWalkOrder(const TreeStructure& tree) {
+  std::size_t num_nodes = 1, num_leaves = 0;
+  std::vector<std::int32_t> open{0};
+  while (!open.empty()) {
+    const TreeChildren& node = tree.nodes[static_cast<std::size_t>(open.back())];
+    open.pop_back();
+    if (node.count <= 0 || node.count > MovingKdopNode::kWidth) return false;
+    for (int i = 0; i < node.count; ++i) {
+      const std::int32_t child = node.child[i];
+      std::size_t& next = child < 0 ? num_leaves : num_nodes;
+      if (static_cast<std::size_t>(child < 0 ? ~child : child) != next++) return false;
+    }
+    if (num_nodes > tree.nodes.size() || num_leaves > tree.leaves.size()) return false;
+    for (int i = node.count; i-- > 0;)
+      if (node.child[i] >= 0) open.push_back(node.child[i]);
+  }
+  return num_nodes == tree.nodes.size() && num_leaves == tree.leaves.size();
+}
+
+/// @brief Whether each of 0 ... n - 1 occurs once among n numbers.
+inline bool isPermutation(const std::vector<std::uint32_t>& numbers) {
+  std::vector<bool> is_met(numbers.size(), false);
+  for (const std::uint32_t i : numbers) {
+    if (i >= numbers.size() || is_met[i]) return false;
+    is_met[i] = true;
+  }
+  return true;
+}
+
 /// @brief Numbers the nodes and leaves of a tree in the order of a walk from node 0.
 /// @param children  children(node, number) returns the children, by their old numbers, of
 /// the node that gets this number
@@ -66,6 +97,7 @@ TreeStructure inWalkOrder(std::size_t num_leaves, Children&& children) {
     std::reverse(open.begin() + static_cast<std::ptrdiff_t>(num_open), open.end());
     tree.nodes[o.number] = node;
   }
+  assert(tree.leaves.size() == num_leaves && isInWalkOrder(tree));
   return tree;
 }
 

@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_TREE_VOLUME_TREE_H
 #define FCL_CCD_TREE_VOLUME_TREE_H
 
+#include <cassert>
 #include <cstddef>
 #include <cstring>
 
@@ -36,6 +37,7 @@ struct VolumeTree {
   Reader reader{};
 
   const void* at(int node) const {
+    assert(nodes && node >= 0);
     return static_cast<const char*>(nodes) +
            static_cast<std::size_t>(node) * reader.stride;
   }
