@@ -75,7 +75,8 @@ BroadPhase::SlotNumber BroadPhase::newSlot(void* object) {
     i = free_.back();
     free_.pop_back();
   }
-  slot_of_.emplace(object, i);
+  [[maybe_unused]] const bool is_new = slot_of_.emplace(object, i).second;
+  assert(is_new);
   at(i).object = object;
   at(i).serial = next_serial_++;
   at(i).filter = ObjectFilter();
@@ -83,7 +84,18 @@ BroadPhase::SlotNumber BroadPhase::newSlot(void* object) {
   return i;
 }
 
+/// Whether each object is a member of one set, and is in the tree of this set.
+bool BroadPhase::isConsistent() const {
+  std::size_t num_members = 0;
+  for (const std::vector<SlotNumber>& members : members_) num_members += members.size();
+  return num_members == slot_of_.size() && is_stale_.size() == slots_.size() &&
+         slots_.size() - free_.size() == slot_of_.size() &&
+         tree_[kMoving].size() == members_[kMoving].size() &&
+         tree_[kResting].size() == members_[kResting].size();
+}
+
 void BroadPhase::setBounds(const MovingBounds& bounds, Slot& slot) {
+  assert(bounds.num_spans > 0 && (bounds.num_spans & (bounds.num_spans - 1)) == 0);
   slot.boxes.assign(bounds.boxes, bounds.boxes + bounds.num_spans + 1);
   slot.flat = bounds.flat ? std::make_unique<MovingFlat>(*bounds.flat) : nullptr;
   slot.rests = isSameAtAllTimes(bounds) && (!bounds.flat || bounds.flat->rests());
@@ -99,6 +111,7 @@ void BroadPhase::join(SlotNumber i) {
 
 void BroadPhase::leave(SlotNumber i, Mobility mobility) {
   std::vector<SlotNumber>& members = members_[mobility];
+  assert(at(i).member < members.size() && members[at(i).member] == i);
   members[at(i).member] = members.back();
   at(members.back()).member = at(i).member;
   members.pop_back();
@@ -149,9 +162,11 @@ void BroadPhase::change(const std::vector<SlotNumber>& slots, const BoundsList& 
   const bool is_rebuilt[2] = {slots.size() * kRebuildShare > members_[kMoving].size(),
                               slots.size() * kRebuildShare > members_[kResting].size()};
   bool is_touched[2] = {false, false};
+  assert(slots.size() == bounds.items.size());
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const SlotNumber number = slots[i];
     Slot& slot = at(number);
+    assert(slot.object);
     if (!are_new) {
       if (slot.rests) markStale(number);
       if (slot.mobility != kUnbounded) {
@@ -172,6 +187,7 @@ void BroadPhase::change(const std::vector<SlotNumber>& slots, const BoundsList& 
   }
   for (const Mobility mobility : {kMoving, kResting})
     if (is_touched[mobility] && is_rebuilt[mobility]) buildTree(mobility);
+  assert(isConsistent());
 }
 
 void BroadPhase::buildTree(Mobility mobility) {
@@ -197,6 +213,7 @@ void BroadPhase::remove(const void* object) {
   at(i).object = nullptr;
   at(i).flat.reset();
   free_.push_back(i);
+  assert(isConsistent());
 }
 
 void BroadPhase::clear() {
@@ -244,6 +261,7 @@ void BroadPhase::addMeeting(const BroadPhase& one, const BroadPhase& two,
     if (a.object == b.object || !a.filter.accepts(b.filter)) continue;
     const MeetingWindow window = meetingWindow(a.bounds(), b.bounds(), query.distance);
     if (window.isEmpty() || window.lo > query.latest) continue;
+    assert(&one != &two || a.serial != b.serial);
     if (&one == &two && b.serial < a.serial)
       found.push_back({window, b.serial, a.serial, near[i].second, near[i].first});
     else
@@ -310,6 +328,9 @@ void BroadPhase::refreshResting() const {
   for (const SlotNumber i : stale_)
     if (at(i).object && at(i).rests) findRestingOf(i, near);
   addMeeting(*this, *this, near, MeetingQuery(), resting_);
+  assert(std::all_of(resting_.begin(), resting_.end(), [this](const Found& pair) {
+    return at(pair.a).object && at(pair.a).rests && at(pair.b).object && at(pair.b).rests;
+  }));
   for (const SlotNumber i : stale_) is_stale_[static_cast<std::size_t>(i)] = 0;
   stale_.clear();
 }
@@ -335,7 +356,10 @@ void BroadPhase::sort(std::vector<Found>& found) const {
   };
   // A product may round up to the beginning of the next part, and a window begin at 1.
   std::vector<std::size_t> end(found.size() + 2, 0);
-  for (const Found& pair : found) ++end[bucket_of(pair) + 1];
+  for (const Found& pair : found) {
+    assert(bucket_of(pair) + 1 < end.size());
+    ++end[bucket_of(pair) + 1];
+  }
   std::partial_sum(end.begin(), end.end(), end.begin());
   std::vector<Found> spread(found.size());
   for (const Found& pair : found) spread[end[bucket_of(pair)]++] = pair;
@@ -347,6 +371,7 @@ void BroadPhase::sort(std::vector<Found>& found) const {
     first = last;
   }
   found.swap(spread);
+  assert(std::is_sorted(found.begin(), found.end(), is_before));
 }
 
 std::vector<MeetingObjects> BroadPhase::sorted(std::vector<Found>& found,

@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_BROADPHASE_BROAD_PHASE_H
 #define FCL_CCD_BROADPHASE_BROAD_PHASE_H
 
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -43,7 +44,10 @@ struct BoundsList {
   std::vector<Item> items;
 
   MovingBounds at(std::size_t i) const {
+    assert(i < items.size());
     const Item& item = items[i];
+    assert(item.num_spans > 0 &&
+           item.first + static_cast<std::size_t>(item.num_spans) < boxes.size());
     return {boxes.data() + item.first, item.num_spans,
             item.flat == Item::kNoFlat ? nullptr : &flats[item.flat]};
   }
@@ -186,8 +190,15 @@ class BroadPhase {
   template <typename Visit>
   void visitMet(const MovingBounds& bounds, const ObjectFilter& filter,
                 const MeetingQuery& query, Visit&& visit) const;
-  Slot& at(SlotNumber i) { return slots_[static_cast<std::size_t>(i)]; }
-  const Slot& at(SlotNumber i) const { return slots_[static_cast<std::size_t>(i)]; }
+  Slot& at(SlotNumber i) {
+    assert(i >= 0 && static_cast<std::size_t>(i) < slots_.size());
+    return slots_[static_cast<std::size_t>(i)];
+  }
+  const Slot& at(SlotNumber i) const {
+    assert(i >= 0 && static_cast<std::size_t>(i) < slots_.size());
+    return slots_[static_cast<std::size_t>(i)];
+  }
+  bool isConsistent() const;
   SlotNumber numberOf(const void* object) const { return slot_of_.at(object); }
   SlotNumber newSlot(void* object);
   void setBounds(const MovingBounds& bounds, Slot& slot);

@@ -18,6 +18,7 @@ constexpr double kBoxTimeMargin = 0x1p-48;
 
 /// The box at time i of n + 1 equally spaced times.
 HalfAxisBox boxAt(const MovingBounds& bounds, int i, int n) {
+  assert(0 <= i && i <= n && n % bounds.num_spans == 0);
   if (bounds.num_spans == n) return bounds.boxes[i];
   const int spans = bounds.num_spans, span = i * spans / n, rest = i * spans % n;
   HalfAxisBox box = bounds.boxes[span];
@@ -42,6 +43,7 @@ void cut(double s0, double s1, MeetingWindow& window) {
   const double change = s0 - s1;
   if (!(std::abs(change) <= DBL_MAX)) return;  // no quotient
   const double t = s0 / change;
+  assert(0 <= t && t <= 1);
   if (s0 < 0)
     window.lo = std::max(window.lo, t - kBoxTimeMargin);
   else
@@ -111,6 +113,7 @@ double speedOf(const FlatSpan& span) {
     }
     square += most * most;
   }
+  assert(0 < span.dt && span.dt <= 1);
   return std::sqrt(square) / span.dt * kUpward;
 }
 
@@ -121,6 +124,8 @@ double speedOf(const FlatSpan& span) {
 /// for the greatest. Bounds that are infinite or NaN do not cut.
 void cut(const FlatSpan& span, const MovingFlat& flat, double distance,
          MeetingWindow& window) {
+  assert(!(flat.stretch < 0) && !(flat.room < 0) && !(flat.room_per_distance < 0));
+  assert(!(flat.bend < 0) && !(flat.bend_per_distance < 0) && !(flat.bend_per_speed < 0));
   const double farthest = farthestOf(span, flat);
   // A distance counts by up to 2^-30 more in a query.
   double room = flat.stretch * distance * (1 + 0x1p-28) + flat.room +
@@ -129,6 +134,7 @@ void cut(const FlatSpan& span, const MovingFlat& flat, double distance,
     room += 0.125 * span.dt * span.dt * kUpward *
             (flat.bend + flat.bend_per_distance * farthest +
              flat.bend_per_speed * speedOf(span));
+  assert(!(room < 0));
   const Heights at_0 = heightsOf(span.box[0], flat, span.knot[0]),
                 at_1 = heightsOf(span.box[1], flat, span.knot[1]);
   cut(room - at_0.least, room - at_1.least, window);
@@ -148,7 +154,8 @@ MeetingWindow meetingWindow(const MovingBounds& a, const MovingBounds& b,
                             double distance) {
   const MovingFlat* const flat = flatOf(a, b);
   const int n = std::max({a.num_spans, b.num_spans, flat ? flat->numSpans() : 1});
-  assert(n % a.num_spans == 0 && n % b.num_spans == 0);
+  assert(n % a.num_spans == 0 && n % b.num_spans == 0 && (n & (n - 1)) == 0);
+  assert(distance >= 0);
   MeetingWindow whole{1, 0};
   bool is_first = true;
   HalfAxisBox a0 = boxAt(a, 0, n), b0 = boxAt(b, 0, n);
@@ -165,13 +172,34 @@ MeetingWindow meetingWindow(const MovingBounds& a, const MovingBounds& b,
     a0 = a1;
     b0 = b1;
     if (part.isEmpty()) continue;
+    assert(0 <= part.lo && part.hi <= 1);
     // n is a power of two: these quotients and sums round by 2^-53.
     if (is_first) whole.lo = std::max(0., (i + part.lo) / n - kBoxTimeMargin);
     whole.hi = std::min(1., (i + part.hi) / n + kBoxTimeMargin);
+    assert(0 <= whole.lo && whole.lo <= whole.hi && whole.hi <= 1);
     is_first = false;
   }
+  assert(is_first == whole.isEmpty());
   return whole;
 }
+
+#ifndef NDEBUG
+
+namespace {
+
+/// Whether a side of a linear box is not inside of that of a box at any time.
+bool containsSide(const float (&ends)[2], const MovingBounds& bounds, int j) {
+  for (int i = 0; i <= bounds.num_spans; ++i) {
+    const double part = double(i) / bounds.num_spans,
+                 at = (1 - part) * double{ends[0]} + part * double{ends[1]};
+    if (at < bounds.boxes[i].half[j]) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+#endif
 
 LinearBox linearBox(const MovingBounds& bounds) {
   const int n = bounds.num_spans;
@@ -189,6 +217,7 @@ LinearBox linearBox(const MovingBounds& bounds) {
     float* const side = out.axis[j % 3] + (j < 3 ? 0 : 2);
     side[0] = roundUp(from + above, std::isfinite(pad) ? pad : 0);
     side[1] = roundUp(to + above, std::isfinite(pad) ? pad : 0);
+    assert(containsSide({side[0], side[1]}, bounds, j));
   }
   return out;
 }
@@ -220,7 +249,9 @@ bool mayMeet(const LinearBox& box, const MovingFlat& flat, const LinearQuery& qu
 
 LinearQuery::LinearQuery(double wanted, double last)
     : distance(wanted > 0 ? roundUp(wanted * (1 + 0x1p-18), 0) : 0),
-      latest(roundUp(last, 0)) {}
+      latest(roundUp(last, 0)) {
+  assert(wanted >= 0 && double{distance} >= wanted && double{latest} >= last);
+}
 
 }  // namespace deformable
 }  // namespace detail

@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_BROADPHASE_MOVING_BOUNDS_H
 #define FCL_CCD_BROADPHASE_MOVING_BOUNDS_H
 
+#include <cassert>
 #include <cstddef>
 
 #include "broadphase/moving_flat.h"
@@ -82,6 +83,8 @@ constexpr float kFloatWindowLoss = 0x1p-20f;
 /// There are two for each axis: their values at t = 0 and t = 1.
 /// @pre no depth is negative at both ends
 inline bool haveCommonTime(const Float4 (&depth)[3], float latest) {
+  for ([[maybe_unused]] const Float4& d : depth)
+    assert(!(d[0] < 0 && d[1] < 0) && !(d[2] < 0 && d[3] < 0));
   const Float4 &x = depth[0], &y = depth[1], &z = depth[2];
   const Float4 at_0[2] = {{x[0], x[2], y[0], y[2]}, {z[0], z[2], z[0], z[2]}},
                at_1[2] = {{x[1], x[3], y[1], y[3]}, {z[1], z[3], z[1], z[3]}};

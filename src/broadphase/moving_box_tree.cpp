@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdlib>
 
 namespace fcl {
 namespace detail {
@@ -17,6 +18,12 @@ constexpr int kBoxesAhead = 16;
 void prefetch(const LinearBox& box) {
   prefetchMemory(&box);
   prefetchMemory(reinterpret_cast<const char*>(&box) + sizeof(LinearBox) - 1);
+}
+
+[[maybe_unused]] bool isSame(const LinearBox& a, const LinearBox& b) {
+  for (int k = 0; k < 3; ++k)
+    if (!std::equal(a.axis[k], a.axis[k] + 4, b.axis[k])) return false;
+  return true;
 }
 
 LinearBox unionOf(const LinearBox& a, const LinearBox& b) {
@@ -54,8 +61,10 @@ void MovingBoxTree::setLeaf(std::int32_t object, std::int32_t node) {
 void MovingBoxTree::fit(std::int32_t node) {
   Node& n = at(node);
   const Node &x = at(n.child[0]), &y = at(n.child[1]);
+  assert(x.parent == node && y.parent == node);
   n.box = unionOf(x.box, y.box);
   n.height = 1 + std::max(x.height, y.height);
+  assert(isSame(unionOf(n.box, x.box), n.box) && isSame(unionOf(n.box, y.box), n.box));
 }
 
 /// Finds the leaf beside which a box is inserted: goes down, each time to the child that
@@ -102,6 +111,8 @@ std::int32_t MovingBoxTree::balance(std::int32_t node) {
   at(moved).parent = node;
   fit(node);
   fit(up);
+  for ([[maybe_unused]] const std::int32_t i : {node, up})
+    assert(std::abs(at(at(i).child[0]).height - at(at(i).child[1]).height) <= 1);
   return up;
 }
 
@@ -114,6 +125,7 @@ void MovingBoxTree::refitAbove(std::int32_t node) {
 }
 
 void MovingBoxTree::insert(const Leaf& leaf) {
+  assert(leaf.object >= 0 && !isInTree(leaf.object));
   const std::int32_t fresh = newNode();
   Node& node = at(fresh);
   node.box = *leaf.box;
@@ -133,11 +145,12 @@ void MovingBoxTree::insert(const Leaf& leaf) {
   at(parent).child[1] = fresh;
   at(sibling).parent = at(fresh).parent = parent;
   refitAbove(parent);
+  assert(isFull() && at(root_).parent == kNone);
 }
 
 void MovingBoxTree::remove(std::int32_t object) {
+  assert(isInTree(object));
   const std::int32_t leaf = leaf_of_[index(object)];
-  assert(leaf != kNone);
   leaf_of_[index(object)] = kNone;
   free_.push_back(leaf);
   --count_;
@@ -151,14 +164,17 @@ void MovingBoxTree::remove(std::int32_t object) {
   replaceChild(above, parent, sibling);
   free_.push_back(parent);
   refitAbove(above);
+  assert(isFull() && at(root_).parent == kNone);
 }
 
 /// Makes the tree of these leaves in a node that is there. Two siblings are neighbours in
 /// memory, and are followed by what is below the first one.
 void MovingBoxTree::buildPart(const std::vector<Leaf>& leaves, Middle* first,
                               Middle* last, std::int32_t node) {
+  assert(first < last);
   if (last - first == 1) {
     const Leaf& leaf = leaves[first->leaf];
+    assert(!isInTree(leaf.object));
     at(node).box = *leaf.box;
     at(node).child[0] = leaf.object;
     at(node).child[1] = kNone;
@@ -212,6 +228,7 @@ std::vector<MovingBoxTree::Leaf> MovingBoxTree::inThisOrder(
   for (const std::uint32_t leaf : at_node)
     if (leaf != kNoLeaf) out.push_back(leaves[leaf]);
   out.insert(out.end(), others.begin(), others.end());
+  assert(out.size() == leaves.size());
   return out;
 }
 
@@ -233,6 +250,7 @@ void MovingBoxTree::build(const std::vector<Leaf>& unordered) {
   root_ = newNode();
   at(root_).parent = kNone;
   buildPart(leaves, middles.data(), middles.data() + middles.size(), root_);
+  assert(isFull() && free_.empty());
 }
 
 }  // namespace deformable

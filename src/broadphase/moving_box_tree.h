@@ -3,6 +3,7 @@
 #define FCL_CCD_BROADPHASE_MOVING_BOX_TREE_H
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -60,9 +61,15 @@ class MovingBoxTree {
   bool isLeaf(std::int32_t node) const { return at(node).isLeaf(); }
   const LinearBox& boxOf(std::int32_t node) const { return at(node).box; }
   /// @pre it is no leaf
-  std::int32_t childOf(std::int32_t node, int k) const { return at(node).child[k]; }
+  std::int32_t childOf(std::int32_t node, int k) const {
+    assert(!isLeaf(node) && (k == 0 || k == 1));
+    return at(node).child[k];
+  }
   /// @pre it is a leaf
-  std::int32_t objectOf(std::int32_t leaf) const { return at(leaf).child[0]; }
+  std::int32_t objectOf(std::int32_t leaf) const {
+    assert(isLeaf(leaf) && leaf_of_[index(at(leaf).child[0])] == leaf);
+    return at(leaf).child[0];
+  }
 
  private:
   static constexpr std::int32_t kNone = -1;
@@ -91,8 +98,23 @@ class MovingBoxTree {
   };
 
   static std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
-  const Node& at(std::int32_t node) const { return nodes_[index(node)]; }
-  Node& at(std::int32_t node) { return nodes_[index(node)]; }
+  const Node& at(std::int32_t node) const {
+    assert(node >= 0 && index(node) < nodes_.size());
+    return nodes_[index(node)];
+  }
+  Node& at(std::int32_t node) {
+    assert(node >= 0 && index(node) < nodes_.size());
+    return nodes_[index(node)];
+  }
+  bool isInTree(std::int32_t object) const {
+    return object >= 0 && index(object) < leaf_of_.size() &&
+           leaf_of_[index(object)] != kNone;
+  }
+  /// @brief Whether there is a leaf for each object, and one node less above them.
+  bool isFull() const {
+    return nodes_.size() - free_.size() == (count_ > 0 ? 2 * count_ - 1 : 0) &&
+           (root_ == kNone) == (count_ == 0);
+  }
 
   std::int32_t newNode();
   void setLeaf(std::int32_t object, std::int32_t node);
@@ -166,6 +188,7 @@ void MovingBoxTree::openPairs(const MovingBoxTree& a, const MovingBoxTree& b,
         top += mayMeet(nodes[index(child)].box, other->box, query);
       }
     }
+    assert(top < stack.pairs.data() + stack.pairs.size());
     stack.size = static_cast<std::size_t>(top - stack.pairs.data());
   }
 }
@@ -180,6 +203,7 @@ void MovingBoxTree::visitPairs(const LinearQuery& query, Visit&& visit) const {
     stack.pop_back();
     if (node.isLeaf()) continue;
     if (mayMeet(at(node.child[0]).box, at(node.child[1]).box, query)) {
+      assert(pairs.size < pairs.pairs.size());
       pairs.pairs[pairs.size++] = {node.child[0], node.child[1]};
       openPairs(*this, *this, query, kPairsAtATime, pairs, visit);
     }

@@ -13,6 +13,7 @@ bool MovingFlat::rests() const {
 }
 
 MovingFlat::Knot MovingFlat::knotAt(int i, int n) const {
+  assert(0 <= i && i <= n && numSpans() > 0 && (numSpans() & (numSpans() - 1)) == 0);
   if (numSpans() == n) return knots[static_cast<std::size_t>(i)];
   assert(numSpans() == 1 && goesStraight());
   Knot knot = knots[0];

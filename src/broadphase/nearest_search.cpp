@@ -2,6 +2,7 @@
 //
 // Pairs of objects in the order of the distance of their boxes: the pair of nodes that
 // may be nearest is opened first.
+#include <cassert>
 #include <cmath>
 #include <deque>
 #include <queue>
@@ -34,6 +35,7 @@ double keptDistance(int exponent, int steps, const Meets& meets) {
     const double middle = (apart + near) / 2;
     (meets(middle) ? near : apart) = middle;
   }
+  assert(0 < apart && apart < near);
   return apart;
 }
 
@@ -218,6 +220,7 @@ class BroadPhase::NearestSearch {
 
   void open(const Work& work) {
     const Part &a = work.a, &b = work.b;
+    assert(!work.is_pair && !(isObject(a) && isObject(b)));
     if (a.tree == b.tree && a.node == b.node) {
       const MovingBoxTree& of = *a.tree->of;
       for (int k = 0; k < 2; ++k) addWithin(*a.tree, of.childOf(a.node, k));
