@@ -38,13 +38,17 @@ struct PlaneAxes {
     const int along = d[0] * (u[1] * v[2] - u[2] * v[1]) +
                       d[1] * (u[2] * v[0] - u[0] * v[2]) +
                       d[2] * (u[0] * v[1] - u[1] * v[0]);
+    assert(count == 2 && along != 0);
     if (along < 0) std::swap(axes[0], axes[1]);
+    for ([[maybe_unused]] const auto& axis : axes)
+      assert(axis[0] * d[0] + axis[1] * d[1] + axis[2] * d[2] == 0);
   }
 };
 
 }  // namespace
 
 void directionOf(int bit, int (&d)[3]) {
+  assert(bit >= 0 && bit < 2 * static_cast<int>(kNumAxes));
   const int axis = bit % static_cast<int>(kNumAxes);
   for (int k = 0; k < 3; ++k) d[k] = bit == axis ? kAxes[axis][k] : -kAxes[axis][k];
 }
@@ -54,7 +58,9 @@ bool BorderProof::isEmbedded(const RegionBorder& border, std::uint32_t direction
   border_ = &border;
   const double size = tree_.largestCoordinate() * tree_.largestCoordinate();
   if (directions == 0 || !isInRange(size)) return false;
+  assert(directions >> 2 * kNumAxes == 0);
   direction_ = widest(directions);
+  assert((directions >> direction_ & 1U) != 0);
   project(direction_);
   return isSimple() && windsOnce();
 }
@@ -102,6 +108,7 @@ void BorderProof::project(int direction) {
   products_[2] = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
   points_.clear();
   for (const std::uint32_t place : border_->points) {
+    assert(place < tree_.vertices().size());
     const TreeVertex& vertex = tree_.vertices()[place];
     MovingPoint point;
     for (int frame = 0; frame < 2; ++frame) {
@@ -112,6 +119,9 @@ void BorderProof::project(int direction) {
         return u[0] * q[0] + u[1] * q[1] + u[2] * q[2];
       };
       point.at[frame] = {along(plane.axes[0]), along(plane.axes[1])};
+      // The third coordinate in fitPoints() is not exceeded.
+      assert(!(std::abs(point.at[frame].x) > 2 * tree_.largestCoordinate()) &&
+             !(std::abs(point.at[frame].y) > 2 * tree_.largestCoordinate()));
     }
     points_.push_back(point);
   }
@@ -139,6 +149,12 @@ void BorderProof::fitPoints() {
     }
     for (int frame = 0; frame < 2; ++frame)
       kernels_.fitPoints(offsets[frame], frame, count, &boxes_.points[first]);
+    for (std::size_t i = 0; i < count; ++i) {
+      [[maybe_unused]] const auto& [at_0, at_1] = points_[first + i].at;
+      [[maybe_unused]] const double third = 2 * tree_.largestCoordinate();
+      assert(containsPoint(boxes_.points[first + i].box.t0, {at_0.x, at_0.y, third}));
+      assert(containsPoint(boxes_.points[first + i].box.t1, {at_1.x, at_1.y, third}));
+    }
   }
 }
 
@@ -175,10 +191,12 @@ void BorderProof::fitTree() {
       node.markTriangles();
       float extents[kWidth];
       kernels_.fitNode(boxes_.points.data(), boxes_.nodes.data(), false, node, extents);
+      assert(node.isComparable());
     }
     below = count;
     first_below = first;
   }
+  assert(first == 0 && below == 1);  // the root
 }
 
 /// Calls visit(i, j) for the pairs of edges whose boxes overlap, until it is false.
@@ -193,6 +211,7 @@ void BorderProof::visitPairs(const KdopShift* shift, Visit&& visit) const {
   while (open.size() > 0 && goes_on) {
     open.cut(open.size() - 1);
     traversal.step(*(open.data() + open.size()), open, [&](int i, int j, float) {
+      assert(i != j);
       goes_on =
           goes_on && visit(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
     });
@@ -210,7 +229,8 @@ bool BorderProof::isSimple() {
 
 void BorderProof::markNear(const RegionBorder& border, int direction, double distance,
                            std::vector<std::uint8_t>& is_apart) {
-  assert(border.size() > 0);
+  assert(border.size() > 0 && distance >= 0 &&
+         is_apart.size() == tree_.vertices().size());
   // Each edge meets some dozens of others where the distance is ten times its length.
   constexpr std::size_t kMostPairsOfEdge = 64;
   border_ = &border;
@@ -305,6 +325,7 @@ bool BorderProof::areApart(const PlanarEdge& e, const PlanarEdge& f,
 /// w[0] at t = 0 and w[1] at t = 1.
 bool BorderProof::areApart(const PlanarEdge& e, const PlanarEdge& f, const Point (&w)[2],
                            double distance) const {
+  assert(distance >= 0);
   double size = 0;
   for (const Point& p : w) size = std::max(size, std::max(std::abs(p.x), std::abs(p.y)));
   size *= tree_.largestCoordinate();

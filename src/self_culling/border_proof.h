@@ -4,6 +4,7 @@
 #ifndef FCL_CCD_SELF_CULLING_BORDER_PROOF_H
 #define FCL_CCD_SELF_CULLING_BORDER_PROOF_H
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -23,7 +24,10 @@ struct BorderTree {
   UninitializedVector<TreeVertex> points;
   UninitializedVector<MovingKdopNode> nodes;
 
-  const MovingKdopNode& node(int i) const { return nodes[static_cast<std::size_t>(i)]; }
+  const MovingKdopNode& node(int i) const {
+    assert(i >= 0 && static_cast<std::size_t>(i) < nodes.size());
+    return nodes[static_cast<std::size_t>(i)];
+  }
 };
 
 /// @brief The vector of a bit of a set of directions (kAxes).
@@ -78,6 +82,7 @@ class BorderProof {
   int widest(std::uint32_t directions) const;
   void project(int direction);
   PlanarEdge planarEdge(std::size_t i) const {
+    assert(i < border_->size() && points_.size() == border_->points.size());
     return {points_[border_->begins[i]], points_[border_->begins[i] + 1]};
   }
   void fitPoints();

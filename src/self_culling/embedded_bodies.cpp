@@ -2,6 +2,7 @@
 #include "self_culling/embedded_bodies.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <vector>
 
@@ -46,6 +47,7 @@ TreeVertex centerOf(const MovingKdopTree& tree, std::int32_t i) {
             (&upper)[8] = (frame == 0 ? node.t0 : node.t1)[2 * k + 1];
       const double low = -double{*std::max_element(lower, lower + node.count)},
                    high = double{*std::max_element(upper, upper + node.count)};
+      assert(low <= high);
       center[frame][k] = tree.origin(frame)[k] + 0.5 * (low + high);
     }
   TreeVertex point{};
@@ -77,6 +79,7 @@ bool isStarShaped(const MovingKdopTree& tree, const Region& region,
       prefetchMemory(&vertices[k]);
     const EightViews views =
         kernels.viewFrom(center, ray, vertices, triangles + i, count, least);
+    assert((views.left & views.right) == 0 && (views.left | views.right) <= all);
     left = left && views.left == all;
     right = right && views.right == all;
     if (!(left || right)) return false;
@@ -86,6 +89,8 @@ bool isStarShaped(const MovingKdopTree& tree, const Region& region,
     if (is_hit || !is_one) return false;
     is_hit = true;
   }
+  // The point is inside: in each direction it sees at least one triangle.
+  assert(is_hit);
   return true;
 }
 
@@ -96,6 +101,7 @@ bool isApartBody(const MovingKdopTree& tree, const Region& region,
   LeastSight least;
   if (!isStarShaped(tree, region, center, kernels, &least)) return false;
   const auto leastOf = [](const double(&x)[8]) { return *std::min_element(x, x + 8); };
+  assert(!(leastOf(least.distance_square) < 0) && !(leastOf(least.sine_square) < 0));
   return leastOf(least.distance_square) * leastOf(least.sine_square) >
          distance * distance * (1 + 0x1p-30);
 }
@@ -120,6 +126,7 @@ std::vector<ClosedNode> closedNodes(const MovingKdopTree& tree) {
 
 EmbeddedRegions findEmbeddedBodies(const MovingKdopTree& tree, const Kernels& kernels,
                                    int num_threads, double distance) {
+  assert(distance >= 0);
   EmbeddedRegions found(tree);
   const std::vector<ClosedNode>& closed =
       tree.regionBorders().closedNodes([&] { return closedNodes(tree); });
@@ -139,6 +146,7 @@ EmbeddedRegions findEmbeddedBodies(const MovingKdopTree& tree, const Kernels& ke
   for (std::size_t i = 0; i < closed.size(); ++i) {
     const Region region = regionOf(tree, closed[i].node, closed[i].last);
     // A body in another one would be the same triangles.
+    assert(region.first_place < region.last_place);
     if (!is_body[i] || found.interior[region.first_place]) continue;
     found.nodes[static_cast<std::size_t>(closed[i].node)] = 1;
     std::fill(found.interior.begin() + region.first_place,

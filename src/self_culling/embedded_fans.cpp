@@ -46,10 +46,12 @@ class FanQueue {
 
   void prove(Alike& alike) {
     EightFans eight;
+    assert(alike.size > 0 && alike.size <= 8);
     // If there are fewer than eight, the last one is repeated.
     for (std::uint32_t i = 0; i < 8; ++i) {
       const std::uint32_t vertex = alike.vertices[std::min(i, alike.size - 1)];
       const VertexFan fan = tree_.fans()[vertex];
+      assert(i == 0 || (fan.count == eight.count && fan.is_closed == eight.is_closed));
       eight.center[i] = &tree_.vertices()[vertex];
       eight.spokes[i] = fan.spokes;
       eight.count = fan.count;
@@ -80,7 +82,7 @@ std::vector<std::uint8_t> findEmbeddedFans(const MovingKdopTree& tree,
                                            double distance) {
   constexpr std::size_t kBlock = 4096, kAhead = 64;
   const std::size_t count = tree.vertices().size();
-  assert(left_out.size() == count);
+  assert(left_out.size() == count && distance >= 0 && tree.fans().size() == count);
   std::vector<std::uint8_t> embedded(count, 0);
   parallelForBlocks(count, kBlock, num_threads, [&](std::size_t i, std::size_t last) {
     FanQueue queue(tree, kernels, distance, embedded);
@@ -124,6 +126,7 @@ std::vector<std::uint32_t> findNodesInFans(const MovingKdopTree& tree,
     }
     for (const auto& places : node.places) {
       const std::uint32_t center = places[0];
+      assert(center < embedded.size());
       if (embedded[center] && tree.fans()[center].count >= kLeastSpokes &&
           areAllIn(node, center))
         centers[i] = center;

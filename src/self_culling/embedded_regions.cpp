@@ -37,6 +37,7 @@ class FacedDirections {
       }
     if (faced != 0 && first < from * kLength) faced &= ofEight(first, from * kLength);
     if (faced != 0 && to * kLength < last) faced &= ofEight(to * kLength, last);
+    assert(faced >> 2 * kNumAxes == 0);
     return faced;
   }
 
@@ -45,6 +46,7 @@ class FacedDirections {
   static constexpr std::uint32_t kUnknown = ~std::uint32_t{0};
 
   std::uint32_t ofEight(std::size_t first, std::size_t last) const {
+    assert(first < last && last - first <= kLength && last <= tree_.triangles().size());
     return kernels_.facedDirections(tree_.vertices().data(), &tree_.triangles()[first],
                                     last - first);
   }
@@ -158,12 +160,16 @@ class RegionSearch {
   /// Records a node as a region, and its inside vertices. These have a closed fan, no
   /// border passes them, and no triangle before the region has them.
   void take(const OpenNode& open, BorderSearch& borders) {
+    assert(!found_.nodes[static_cast<std::size_t>(open.node)]);
+    assert(found_.directions[static_cast<std::size_t>(open.node)] < 2 * kNumAxes);
     found_.nodes[static_cast<std::size_t>(open.node)] = 1;
     const Region region = regionOf(open);
     for (std::uint32_t v = region.first_place; v < region.last_place; ++v)
       found_.interior[v] = tree_.fans()[v].is_closed;
-    for (const std::uint32_t v : borderOf(open, borders).points)
+    for (const std::uint32_t v : borderOf(open, borders).points) {
+      assert(v < region.last_place);
       if (v >= region.first_place) found_.interior[v] = 0;
+    }
   }
 
   const MovingKdopTree& tree_;
@@ -177,7 +183,7 @@ class RegionSearch {
 void addEmbeddedRegions(const MovingKdopTree& tree, const Kernels& kernels,
                         int num_threads, EmbeddedRegions& found,
                         std::uint32_t least_triangles) {
-  assert(tree.numNodes() > 0 && least_triangles > 0);
+  assert(tree.numNodes() > 0 && least_triangles > 0 && found.isOf(tree));
   RegionSearch regions(tree, kernels, least_triangles, found);
   // Two open nodes have no common triangle, and no vertex is written for both.
   constexpr std::size_t kTasks = 64;

@@ -5,6 +5,7 @@
 #ifndef FCL_CCD_SELF_CULLING_EMBEDDED_REGIONS_H
 #define FCL_CCD_SELF_CULLING_EMBEDDED_REGIONS_H
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -37,6 +38,12 @@ struct EmbeddedRegions {
       : nodes(tree.numNodes(), 0),
         interior(tree.vertices().size(), 0),
         directions(tree.numNodes(), kNoDirection) {}
+
+  /// @brief Whether this is about the nodes and vertices of a tree.
+  bool isOf(const MovingKdopTree& tree) const {
+    return nodes.size() == tree.numNodes() && directions.size() == tree.numNodes() &&
+           interior.size() == tree.vertices().size();
+  }
 };
 
 /// @brief Least number of triangles of a region. To find regions of 64 triangles takes

@@ -47,6 +47,7 @@ class BorderMarks {
     }
     for (std::size_t i = 0; i < border.size(); ++i) {
       const std::uint32_t from = border.from(i), to = border.to(i), third = next_[to];
+      assert(third != kNone);  // an edge of the border begins where another one ends
       if (next_[from] == kSeveral || third == kSeveral || next_[third] == from)
         is_apart_[from] = is_apart_[to] = 0;
     }
@@ -81,6 +82,7 @@ class RegionMarks {
     for (std::size_t i = 0; i < count; ++i) {
       if (regions_.nodes[i]) apart_.nodes[i] = static_cast<std::uint32_t>(i);
       const std::uint32_t region = apart_.nodes[i];
+      assert(region == kNone || (region <= i && regions_.nodes[region]));
       if (region == kNone || isBody(region)) continue;
       prefetch(std::min(i + kAhead, count - 1));
       const MovingKdopNode& node = tree_.node(static_cast<int>(i));
@@ -136,6 +138,7 @@ class RegionMarks {
              kernels_.lowCorners(tree_.vertices().data(), node, direction, distance_);
          left != 0; left &= left - 1) {
       const int corner = lowestBit(left), lane = corner % 8;
+      assert(corner < 24 && lane < node.count && node.isTriangle(lane));
       is_apart_[node.places[corner / 8][lane]] = 0;
       for (const auto& places : node.places) apart_.fans[places[lane]] = 0;
     }
@@ -160,8 +163,7 @@ class RegionMarks {
 
 RegionsApart findRegionsApart(const MovingKdopTree& tree, const EmbeddedRegions& regions,
                               const Kernels& kernels, double distance) {
-  assert(regions.nodes.size() == tree.numNodes() &&
-         regions.interior.size() == tree.vertices().size());
+  assert(regions.isOf(tree) && distance >= 0);
   RegionsApart apart{std::vector<std::uint32_t>(tree.numNodes(), kNone),
                      regions.interior};
   RegionMarks marks(tree, regions, kernels, distance, apart);
