@@ -2,6 +2,7 @@
 #include "model/coordinate_arrays.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -78,6 +79,7 @@ std::size_t findNotFinite(const S* coordinates, std::size_t num_vertices,
       num_vertices, num_threads, num_vertices, [&](std::size_t first, std::size_t last) {
         if (areFinite(coordinates + 3 * first, 3 * (last - first))) return num_vertices;
         while (areFinite(coordinates + 3 * first, 3)) ++first;
+        assert(first < last);  // one of the block is not finite
         return first;
       });
   return *std::min_element(results.begin(), results.end());

@@ -6,6 +6,7 @@
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 
 #include <algorithm>
+#include <cassert>
 #include <memory>
 #include <new>
 #include <string>
@@ -32,6 +33,7 @@ DeformableBVHModel<BV>::DeformableBVHModel(const DeformableBVHModel& other)
   fitPerThread();
   if (this->build_state == BVH_BUILD_STATE_BEGUN && this->num_vertices == 0) makeRoom();
   state_ = other.state_.ofCopy(other.arrays(), arrays());
+  assert(isInStep() == other.isInStep());
 }
 
 template <typename BV>
@@ -45,6 +47,7 @@ const BVHModel<BV>& DeformableBVHModel<BV>::copyable(const DeformableBVHModel& m
 /// it gets memory here.
 template <typename BV>
 void DeformableBVHModel<BV>::makeRoom() {
+  assert(this->num_vertices == 0);
   delete[] std::exchange(this->vertices, nullptr);
   const std::unique_ptr<Triangle[]> triangles(std::exchange(this->tri_indices, nullptr));
   this->build_state = BVH_BUILD_STATE_EMPTY;
@@ -99,6 +102,7 @@ void DeformableBVHModel<BV>::seal() {
 
 template <typename BV>
 detail::deformable::VertexFrames DeformableBVHModel<BV>::frames() const {
+  assert(this->prev_vertices && this->vertices && this->num_vertices > 0);
   return {this->prev_vertices->data(), this->vertices->data(),
           static_cast<std::size_t>(this->num_vertices)};
 }
@@ -126,6 +130,7 @@ Primitive DeformableBVHModel<BV>::primitive(std::intptr_t b) const {
   const auto num_triangles = static_cast<std::size_t>(this->num_tris);
   if (index < num_triangles) return {PrimitiveKind::kTriangle, index};
   index -= num_triangles;
+  assert(b >= 0 && index < numFreeEdges() + numFreePoints());
   if (index < numFreeEdges()) return {PrimitiveKind::kFreeEdge, index};
   return {PrimitiveKind::kFreePoint, index - numFreeEdges()};
 }

@@ -6,6 +6,7 @@
 #include "model/model_instances.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
 #include <memory>
 #include <string>
@@ -115,6 +116,7 @@ int DeformableBVHModel<BV>::addSubModel(const std::vector<Vector3<S>>& ps,
     return ts.empty() ? Base::addSubModel(ps) : Base::addSubModel(ps, ts);
   };
   if (const int code = grow(add)) return code;
+  assert(static_cast<std::size_t>(this->num_vertices) == first + ps.size());
   addFree(edges, points, first);
   return accept();
 }
@@ -310,6 +312,7 @@ int DeformableBVHModel<BV>::updateTopology(const std::vector<Triangle>& triangle
   state_.setPrevious(arrays());
   state_.setFclTree(fcl_tree == FclTree::kUpdate ? FclTreeIs::kUpToDate
                                                  : FclTreeIs::kMissing);
+  assert(phase() == Phase::kHalfUpdated);
   refitChangedTree(frames());
   computeLocalAABB();
   seal();
@@ -361,6 +364,7 @@ template <typename BV>
 void DeformableBVHModel<BV>::shiftFrames(const S* previous, FclTree fcl_tree, bool refit,
                                          bool bottomup) {
   const auto count = static_cast<std::size_t>(this->num_vertices);
+  assert(isBuilt() && staged_.size() == count);
   const Phase before = phase();
   const bool repair = before == Phase::kHalfUpdated;
   std::unique_ptr<Vector3<S>[]> room;
@@ -399,6 +403,7 @@ void DeformableBVHModel<BV>::shiftFrames(const S* previous, FclTree fcl_tree, bo
 
 template <typename BV>
 void DeformableBVHModel<BV>::finish() {
+  assert(phase() == Phase::kHalfUpdated);  // no query accepts it until it is sealed
   refitTree(frames());
   computeLocalAABB();
   seal();

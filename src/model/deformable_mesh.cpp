@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -81,8 +82,10 @@ void DeformableMesh::reserveFree(std::size_t num_edges, std::size_t num_points) 
 
 void DeformableMesh::addFree(const std::vector<FreeEdge>& edges,
                              const std::vector<std::size_t>& points, std::size_t first) {
-  for (const FreeEdge& edge : edges)
+  for (const FreeEdge& edge : edges) {
+    assert(edge[0] != edge[1]);
     free_edges_.push_back({edge[0] + first, edge[1] + first});
+  }
   for (const std::size_t point : points) free_points_.push_back(point + first);
 }
 
@@ -99,6 +102,7 @@ std::vector<Triangle> DeformableMesh::leavesOf(const Triangle* triangles,
   leaves.assign(triangles, triangles + num_triangles);
   for (const FreeEdge& edge : free_edges_) leaves.emplace_back(edge[0], edge[1], edge[1]);
   for (const std::size_t point : free_points_) leaves.emplace_back(point, point, point);
+  assert(leaves.size() == num_triangles + free_edges_.size() + free_points_.size());
   return leaves;
 }
 
@@ -320,16 +324,21 @@ void DeformableMesh::buildTree(const Triangle* triangles, std::size_t num_triang
     tree_->build(triangles, num_triangles, frames, num_threads_,
                  {free_edges_.size(), free_points_.size()});
   });
+  assert(tree_->triangles().size() == num_triangles &&
+         tree_->vertices().size() <= frames.size());
   num_restructurings_ = 0;
 }
 
 void DeformableMesh::changeTopology(const Triangle* triangles, std::size_t num_triangles,
                                     const std::vector<int>& origins,
                                     const deformable::VertexFrames& frames) {
+  assert(!hasFree());
   const deformable::DefaultFloatingPoint mode;
   deformable::inArena(num_threads_, [&] {
     tree_->changeTopology(triangles, num_triangles, origins, frames, num_threads_);
   });
+  assert(tree_->triangles().size() == num_triangles &&
+         tree_->vertices().size() <= frames.size());
 }
 
 void DeformableMesh::refitTree(const deformable::VertexFrames& frames) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "model/fcl_tree.h"
 
+#include <cassert>
 #include <cfloat>
 #include <cstddef>
 #include <type_traits>
@@ -83,6 +84,7 @@ VolumeTree fclTree(const BVHModel<BV>& model) {
   static_assert(
       std::is_standard_layout_v<BVNodeBase> && offsetof(BVNodeBase, first_child) == 0,
       "a node begins with its link");
+  assert(model.getNumBVs() > 0);
   VolumeTree tree;
   // The address of the base, with which a node begins.
   tree.nodes = &model.getBV(0);

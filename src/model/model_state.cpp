@@ -43,6 +43,7 @@ ModelState ModelState::ofCopy(const ModelArrays& now, const ModelArrays& copied)
   copy.made_for_ = is_in_step ? copied : ModelArrays{};
   if (made_ == Made::kTree && !is_in_step) copy.made_ = Made::kNothing;
   copy.opened_on_ = opened_on_ == now ? copied : ModelArrays{};
+  assert((copy.phase(copied) == Phase::kInStep) == is_in_step);
   return copy;
 }
 
@@ -53,6 +54,7 @@ void ModelState::beginUpdate(OpenUpdate what, const ModelArrays& now) {
 }
 
 bool ModelState::endUpdate(const ModelArrays& now) {
+  assert(open_ != OpenUpdate::kNone);
   open_ = OpenUpdate::kNone;
   return opened_on_ == now;
 }
@@ -67,6 +69,7 @@ void ModelState::beginChange() { made_ = Made::kHalfATree; }
 
 void ModelState::setPrevious(const ModelArrays& now) {
   assert(made_ != Made::kTree || !(made_for_ == now));
+  assert(now.prev_vertices && now.prev_vertices != now.vertices && now.num_vertices > 0);
   made_for_.prev_vertices = now.prev_vertices;
   made_for_.num_vertices = now.num_vertices;
 }
@@ -85,6 +88,7 @@ void ModelState::seal(const ModelArrays& now) {
   assert(now.vertices && now.prev_vertices && now.num_vertices > 0);
   assert(now.tri_indices || now.num_tris == 0);
   assert(now.build_state == builtState());
+  assert(now.vertices != now.prev_vertices);
   made_ = Made::kTree;
   made_for_ = now;
 }

@@ -2,6 +2,7 @@
 #include "model/sound_tree.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -111,6 +112,7 @@ bool isFittedFromTheTop(const BVHModel<BV>& model) {
 /// The axes, two of them turned by 45 degrees about the other one.
 template <typename S>
 Matrix3<S> turnedAxes(const Matrix3<S>& axes, int about) {
+  assert(about >= 0 && about < 3);
   const int i = (about + 1) % 3, j = (about + 2) % 3;
   const S cosine = std::sqrt(S{0.5});
   Matrix3<S> out = axes;
@@ -175,6 +177,26 @@ kIOS<S> turned(const kIOS<S>& bv, int about) {
   return out;
 }
 
+#ifndef NDEBUG
+/// Whether a box contains the corners of another one.
+bool containsBox(const OrientedBox& box, const OrientedBox& other) {
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    double p[3];
+    for (int k = 0; k < 3; ++k) {
+      p[k] = other.center[k] - box.center[k];
+      for (int i = 0; i < 3; ++i)
+        p[k] += (corner >> i & 1U ? 1 : -1) * other.axis[i][k] * other.extent[i];
+    }
+    for (int i = 0; i < 3; ++i) {
+      const double along =
+          box.axis[i][0] * p[0] + box.axis[i][1] * p[1] + box.axis[i][2] * p[2];
+      if (std::abs(along) > box.extent[i]) return false;
+    }
+  }
+  return true;
+}
+#endif
+
 /// Whether a box, enlarged by a margin, contains the corners of the triangles below a
 /// node.
 template <typename BV>
@@ -221,6 +243,7 @@ bool containAllCorners(const BVHModel<BV>& model) {
 
 template <typename BV>
 bool isTreeSound(const BVHModel<BV>& model) {
+  assert(model.getNumBVs() > 0);
   if constexpr (kHasSlabs<BV>)
     return true;
   else
@@ -241,6 +264,7 @@ void markFittedFromTheTop(BVHModel<BV>& model) {
             !isNoSum(bv, model.getBV(node.leftChild()).bv,
                      model.getBV(node.rightChild()).bv))
           continue;
+        assert(containsBox(orientedBoxOf(bv), orientedBoxOf(node.bv)));
         node.bv = bv;
         return true;
       }
