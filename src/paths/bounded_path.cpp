@@ -6,6 +6,7 @@
 #include "paths/motion_path.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 
@@ -103,6 +104,7 @@ void MotionPath::setBoundedSpeed() {
   const double wanted = std::max(turn_speed_, is_bent ? whole_bend / (2 * moved) : 1);
   const double num_spans = std::min(std::ceil(wanted), kMostSpans),
                half = 0.5 / num_spans;
+  assert(1 <= num_spans && num_spans <= kMostSpans);
   for (double i = 0; i < num_spans; ++i) {
     const double t0 = i / num_spans, t1 = (i + 1) / num_spans, middle = t0 + half,
                  speed = norm(boundedRate(middle).translation) + rate_error,

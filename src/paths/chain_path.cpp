@@ -8,6 +8,7 @@
 #include "paths/chain_path.h"
 
 #include <atomic>
+#include <cassert>
 #include <string>
 #include <utility>
 
@@ -60,6 +61,26 @@ struct StateKey {
   }
 };
 
+/// A computed rotation is one up to this, whatever its joints: bounds on its error are
+/// smaller, but for chains of very many fixed joints. For assertions.
+[[maybe_unused]] constexpr double kMostDefect = 0x1p-30;
+
+/// Whether no bound is smaller than the other one; also of NaN. For assertions.
+[[maybe_unused]] bool areAtLeast(const DerivativeBounds& x, const DerivativeBounds& y) {
+  return !(x.first < y.first) && !(x.second < y.second) && !(x.third < y.third);
+}
+
+/// Whether what holds for a joint includes what holds for the one before it: lengths and
+/// errors add up along a chain. For assertions.
+[[maybe_unused]] bool includes(const JointBounds& of, const JointBounds& before) {
+  return areAtLeast(of.rotation, before.rotation) &&
+         areAtLeast(of.rotation, of.rotation_before) &&
+         areAtLeast(of.translation, before.translation) && !(of.reach < before.reach) &&
+         !(of.rotation_error < before.rotation_error) &&
+         !(of.translation_error < before.translation_error) &&
+         !(of.turn_error < before.turn_error) && !(of.speed_error < before.speed_error);
+}
+
 /// The middle of a span, and half of its length.
 struct Middle {
   double t, half;
@@ -73,12 +94,16 @@ ChainPath::ChainPath(std::shared_ptr<const JointTree> tree, const Pose& base,
     : tree_(std::move(tree)), base_(base), number_(nextNumber()) {
   base_bounds_.reach = norm(base.translation);
   const auto& joints = tree_->joints();
+  assert(values.size() == joints.size());
   for (std::size_t j = 0; j < joints.size(); ++j) {
+    // Each joint comes after the one that carries it.
+    assert(-1 <= joints[j].parent && joints[j].parent < static_cast<int>(j));
     requireValue(values[j], joints[j].is_revolute, j);
     bounds_.push_back(boundsOf(joints[j], values[j]));
     const Coefficients rate = derivativeOf(values[j]);
     values_.push_back({std::move(values[j]), rate, derivativeOf(rate)});
   }
+  assert(values_.size() == bounds_.size());
 }
 
 JointBounds ChainPath::boundsOf(const JointTree::Joint& joint,
@@ -119,6 +144,7 @@ JointBounds ChainPath::boundsOf(const JointTree::Joint& joint,
       before.rotation.first * way_error + 4 * kUnit * out.translation.first;
   (joint.is_revolute ? out.turn_error : out.speed_error) +=
       moves.first * (turned + joint.origin.rotation_error) + rate_error;
+  assert(includes(out, before));
   return out;
 }
 
@@ -170,9 +196,11 @@ JointState ChainPath::moved(const JointTree::Joint& joint, const JointState& bef
 
 void ChainPath::computeStates(double t, std::size_t count, Kept& kept) const {
   const auto& joints = tree_->joints();
+  assert(count <= joints.size());
   kept.states.resize(joints.size());
   for (; kept.count < count; ++kept.count) {
     const JointTree::Joint& joint = joints[kept.count];
+    assert(joint.parent < static_cast<int>(kept.count));
     kept.states[kept.count] =
         moved(joint,
               joint.parent < 0 ? baseState()
@@ -191,11 +219,14 @@ JointState ChainPath::stateAt(int joint, double t) const {
   Kept& kept = cache->get(slot, {number_, t}, [](Kept& made) { made.count = 0; });
   const auto place = static_cast<std::size_t>(joint);
   computeStates(t, place + 1, kept);
+  assert(place < kept.count && isRotation(kept.states[place].rotation, kMostDefect));
   return kept.states[place];
 }
 
 LinkPath::LinkPath(std::shared_ptr<const ChainPath> chain, const JointTree::Link& link)
-    : chain_(std::move(chain)), joint_(link.joint), pose_(link.pose) {}
+    : chain_(std::move(chain)), joint_(link.joint), pose_(link.pose) {
+  assert(joint_ < static_cast<int>(chain_->tree().joints().size()));
+}
 
 bool LinkPath::isRevolute() const {
   return joint_ >= 0 &&
@@ -236,6 +267,8 @@ DerivativeBounds LinkPath::boundsOfBall(const Vec& center, double radius) const 
     across = norm(cross(chain_->tree().joints()[static_cast<std::size_t>(joint_)].axis,
                         center)) +
              64 * kUnit * norm(center) + radius;
+  // A part of x is not longer than x.
+  assert(!(across > far * kUpward + 0x1p-500));
   const auto bound = [&](double translation, double before, double rotation) {
     return (translation + before * far + (rotation - before) * across) * kUpward;
   };
@@ -261,10 +294,15 @@ double LinkPath::accelerationBound(const double (&center)[3], double radius, dou
   const Vec turned = rotated(state.rotation, x);
   const double turning = dot(state.turn, state.turn) + norm(state.turn_rate),
                error = 16 * bounds().rotation_error;
-  const double there = norm(state.acceleration + cross(state.turn_rate, turned) +
-                            cross(state.turn, cross(state.turn, turned))) +
+  const Vec own = state.acceleration + cross(state.turn_rate, turned) +
+                  cross(state.turn, cross(state.turn, turned));
+  const double there = norm(own) +
                        turning * (size + (error + 0x1p-44) * (norm(x) + size)) +
                        (0x1p-36 + error) * whole.second;
+  // The bound for the whole step holds in the middle of the span.
+  assert(!isTimeOfStep(middle.t) ||
+         !(norm(own) > (1 + 0x1p-36 + error) * whole.second * kUpward +
+                           turning * (error + 0x1p-44) * (norm(x) + size) + 0x1p-500));
   return std::min(whole.second, there + middle.half * whole.third) * kUpward;
 }
 
@@ -276,6 +314,10 @@ double LinkPath::angularSpeedBound(double t0, double t1) const {
   const double there = norm(state.turn) +
                        (0x1p-36 + 16 * bounds().rotation_error) * whole.first +
                        middle.half * whole.second;
+  assert(
+      !isTimeOfStep(middle.t) ||
+      !(norm(state.turn) >
+        (1 + 0x1p-36 + 16 * bounds().rotation_error) * whole.first * kUpward + 0x1p-500));
   return std::min(whole.first, there) * kUpward;
 }
 

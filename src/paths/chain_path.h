@@ -16,6 +16,7 @@
 #ifndef FCL_CCD_PATHS_CHAIN_PATH_H
 #define FCL_CCD_PATHS_CHAIN_PATH_H
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -63,6 +64,7 @@ class ChainPath {
   const std::shared_ptr<const JointTree>& sharedTree() const { return tree_; }
   const Pose& base() const { return base_; }
   const JointBounds& bounds(int joint) const {
+    assert(joint < static_cast<int>(bounds_.size()));
     return joint < 0 ? base_bounds_ : bounds_[static_cast<std::size_t>(joint)];
   }
 

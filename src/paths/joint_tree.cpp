@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "paths/joint_tree.h"
 
+#include <cassert>
+
 #include "numerics/error_bounds.h"
 #include "paths/path_matrix.h"
 #include "paths/posed_vector.h"
@@ -37,6 +39,8 @@ RoundedPose operator*(const RoundedPose& x, const RoundedPose& y) {
 }
 
 int JointTree::add(Type type, const Pose& origin, const Vec& axis, int parent) {
+  assert(-1 <= parent && parent < static_cast<int>(links_.size()));
+  assert(isRotation(origin.rotation, 0x1p-44) && (type == Type::kFixed || isUnit(axis)));
   const RoundedPose own{origin, 0, 0};
   const Link carrier =
       parent < 0 ? Link{-1, {}} : links_[static_cast<std::size_t>(parent)];
@@ -44,6 +48,8 @@ int JointTree::add(Type type, const Pose& origin, const Vec& axis, int parent) {
   if (type == Type::kFixed) {
     links_.push_back({carrier.joint, in_carrier, parent, false});
   } else {
+    // Each joint comes after the one that carries it.
+    assert(carrier.joint < static_cast<int>(joints_.size()));
     Joint joint{type == Type::kRevolute, carrier.joint, in_carrier, axis, {}, {}, {}};
     const double(&rotation)[9] = joint.origin.pose.rotation;
     joint.axis_in_parent = rotated(rotation, axis);
@@ -52,6 +58,7 @@ int JointTree::add(Type type, const Pose& origin, const Vec& axis, int parent) {
     links_.push_back({static_cast<int>(joints_.size()), {}, parent, true});
     joints_.push_back(joint);
   }
+  assert(links_.back().joint < static_cast<int>(joints_.size()));
   return static_cast<int>(links_.size()) - 1;
 }
 

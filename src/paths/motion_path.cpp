@@ -5,6 +5,7 @@
 #include "paths/motion_path.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "numerics/error_bounds.h"
 #include "paths/posed_vector.h"
@@ -14,6 +15,7 @@ namespace detail {
 namespace deformable {
 
 double AccelerationBound::of(const Vec& center, double radius) const {
+  assert(!(radius < 0) && !(per_radius < 0) && !(per_distance < 0) && !(constant < 0));
   if (motion) return ofProgram(center, radius);
   return (norm(rotated(turn, center) + vecOf(offset)) + per_radius * radius +
           per_distance * norm(center) + constant) *
@@ -23,7 +25,11 @@ double AccelerationBound::of(const Vec& center, double radius) const {
 // The terms with the center are convex in it, so that the ends of its line are enough. Of
 // a bound of the program nothing is known but what it says of balls.
 double AccelerationBound::between(const Vec& begin, const Vec& end, double radius) const {
-  if (!motion) return std::max(of(begin, radius), of(end, radius));
+  if (!motion) {
+    const double most = std::max(of(begin, radius), of(end, radius));
+    assert(!(of(0.5 * (begin + end), radius) > most * kUpward + 0x1p-500));
+    return most;
+  }
   const Vec half = 0.5 * (end - begin);
   return of(begin + half, (radius + norm(half)) * kUpward);
 }
@@ -67,6 +73,7 @@ PoseRate MotionPath::rate(double t) const {
 }
 
 AccelerationBound MotionPath::acceleration(double t0, double t1) const {
+  assert(isTimeOfStep(t0) && isTimeOfStep(t1));
   switch (kind_) {
     case Kind::kTurn:
       return turnAcceleration();

@@ -6,6 +6,8 @@
 // more is the rounding of the body's path.
 #include "paths/offset_path.h"
 
+#include <cassert>
+
 #include "base/default_floating_point.h"
 #include "numerics/error_bounds.h"
 #include "paths/path_matrix.h"
@@ -28,6 +30,11 @@ BoundedMotion::Placement times(const Numbers& body, const Pose& offset) {
 
 }  // namespace
 
+OffsetPath::OffsetPath(const MotionPath& body, const Pose& offset)
+    : body_(body), offset_(offset) {
+  assert(isRotation(offset.rotation, 0x1p-44));
+}
+
 BoundedMotion::Placement OffsetPath::placementAt(double t) const {
   const DefaultFloatingPoint mode;
   return times(body_.pose(t), offset_);
@@ -43,6 +50,7 @@ BoundedMotion::Placement OffsetPath::rateAt(double t) const {
 double OffsetPath::accelerationBound(const double (&center)[3], double radius, double t0,
                                      double t1) const {
   const DefaultFloatingPoint mode;
+  assert(!(radius < 0));
   const double size = norm(center) + norm(offset_.translation);
   return body_.acceleration(t0, t1).of(posed(offset_, vecOf(center)),
                                        radius * (1 + 0x1p-45) + 0x1p-48 * size);

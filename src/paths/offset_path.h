@@ -15,7 +15,7 @@ class OffsetPath : public BoundedMotion {
  public:
   /// @param body  lives as long as this
   /// @param offset  the frame in that of the body; a rotation up to 2^-47
-  OffsetPath(const MotionPath& body, const Pose& offset) : body_(body), offset_(offset) {}
+  OffsetPath(const MotionPath& body, const Pose& offset);
 
   Placement placementAt(double t) const override;
   Placement rateAt(double t) const override;

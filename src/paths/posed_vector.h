@@ -17,6 +17,14 @@ inline double norm(const Vec& v) { return std::sqrt(dot(v, v)); }
 inline double norm(const double (&v)[3]) { return norm(vecOf(v)); }
 inline Vec unit(const Vec& v) { return (1 / norm(v)) * v; }
 
+/// @brief Whether the length is 1, up to rounding; also of NaN. For assertions.
+inline bool isUnit(const Vec& v) { return !(std::abs(dot(v, v) - 1) > 0x1p-46); }
+
+/// @brief Whether a time is one of the step, and whether a span is a part of it. For
+/// assertions.
+inline bool isTimeOfStep(double t) { return 0 <= t && t <= 1; }
+inline bool isPartOfStep(double t0, double t1) { return 0 <= t0 && t0 <= t1 && t1 <= 1; }
+
 /// @brief The first or second derivative of a pose by t.
 struct PoseRate {
   double rotation[9];

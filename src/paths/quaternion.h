@@ -5,6 +5,7 @@
 #ifndef FCL_CCD_PATHS_QUATERNION_H
 #define FCL_CCD_PATHS_QUATERNION_H
 
+#include <cassert>
 #include <cmath>
 
 #include "numerics/moving_vector.h"
@@ -60,7 +61,9 @@ inline Turning turningOf(Quaternion q) {
   const double length = norm(q.v), whole = norm(q);
   if (!(length > 0.5 * kLeastTurn * whole)) return {};
   const Vec axis = (1 / length) * q.v;
-  return {(1 / norm(axis)) * axis, 2 * angleOf(q.s / whole, length / whole)};
+  const Turning out{(1 / norm(axis)) * axis, 2 * angleOf(q.s / whole, length / whole)};
+  assert(isUnit(out.axis) && !(out.angle < 0 || out.angle > 3.1416));
+  return out;
 }
 
 }  // namespace deformable

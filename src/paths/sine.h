@@ -5,6 +5,7 @@
 #ifndef FCL_CCD_PATHS_SINE_H
 #define FCL_CCD_PATHS_SINE_H
 
+#include <cassert>
 #include <cmath>
 
 namespace fcl {
@@ -40,6 +41,8 @@ constexpr double kCosineSeries[8] = {
 /// 2^-102: 1 u. Taylor's series up to x^17 and x^18 leave (pi / 4)^19 / 19! < 2^-63. The
 /// sum of the first two terms rounds by u / 2, what is below them by less than u.
 inline SineCosine sineCosine(double x) {
+  // A bound on an angle may round.
+  assert(!(std::abs(x) > kMostAngle * (1 + 0x1p-40)));
   const double quadrant = std::nearbyint(x * kTwoOverPi);
   const double r =
       ((x - quadrant * kHalfPi[0]) - quadrant * kHalfPi[1]) - quadrant * kHalfPi[2];
@@ -51,6 +54,7 @@ inline SineCosine sineCosine(double x) {
   }
   s = r + r * (q * s);
   c = 1 - (0.5 * q - (q * q) * c);
+  assert(!(std::abs(s * s + c * c - 1) > 0x1p-48));
   switch (static_cast<int>(quadrant) & 3) {
     case 0:
       return {s, c};
@@ -76,6 +80,7 @@ inline SineCosine sineAndOneMinusCosine(double x) {
 /// a few u. The first estimate is within 0.005. Then Newton's method of third order is
 /// applied twice: 2e-8, 1e-24.
 inline double angleOf(double cosine, double sine) {
+  assert(!(cosine < 0) && !(sine < 0));
   const bool steep = sine > cosine;
   const double ratio = steep ? cosine / sine : sine / cosine;
   const double guess = ratio * (0.7853981633974483 + 0.273 * (1 - ratio));
@@ -85,6 +90,7 @@ inline double angleOf(double cosine, double sine) {
     const double off = sine * at.cosine - cosine * at.sine;
     angle += off + off * off * off / 6;
   }
+  assert(!(angle < 0 || angle > 1.5708));
   return angle;
 }
 

@@ -7,6 +7,7 @@
 #include "paths/motion_path.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 
@@ -28,6 +29,8 @@ void splineWeights(double t, double (&w)[4]) {
   w[1] = (4 - 3 * t * t * (2 - t)) / 6;
   w[2] = (4 - 3 * s * s * (2 - s)) / 6;
   w[3] = t * t * t / 6;
+  assert(!isTimeOfStep(t) || (std::all_of(w, w + 4, [](double x) { return x >= 0; }) &&
+                              std::abs(w[0] + w[1] + w[2] + w[3] - 1) <= 0x1p-48));
 }
 
 Vec splineAt(const double (&points)[4][3], const double (&w)[4]) {
@@ -125,6 +128,9 @@ Pose MotionPath::splinePose(double t) const {
   r[6] = b * w.x * w.z - a * w.y;
   r[5] = b * w.y * w.z - a * w.x;
   r[7] = b * w.y * w.z + a * w.x;
+  assert(isRotation(r, 0x1p-44));
+  assert(!isTimeOfStep(t) ||
+         !(norm(vecOf(out.translation)) > largest_translation_ * kUpward + 0x1p-500));
   return out;
 }
 
@@ -150,6 +156,12 @@ PoseRate MotionPath::splineRate(double t) const {
   PoseRate out;
   crossColumns(v, splinePose(t).rotation, out.rotation);
   set(out.translation, splineRateAt(translation_points_, t));
+  assert(!isTimeOfStep(t) || !(longestColumn(out.rotation) >
+                               turn_speed_ * kUpward + rotationRateError() + 0x1p-500));
+  // Control points that are shifted round by u.
+  assert(!isTimeOfStep(t) ||
+         !(norm(vecOf(out.translation)) > translation_speed_ * kUpward + rateError(0) +
+                                              8 * kUnit * translation_size_ + 0x1p-500));
   return out;
 }
 
@@ -170,6 +182,8 @@ AccelerationBound MotionPath::splineAcceleration(double t0, double t1) const {
   const double bending = largest(w0, w1) + slack;
   const double turning =
       std::max(largest(rate0, rate1), norm(rate0 + (0.5 * (t1 - t0)) * w0)) + slack;
+  assert(!(norm(splineRateAt(rotation_points_, t0 + 0.5 * (t1 - t0))) >
+           turning * kUpward + 0x1p-500));
   AccelerationBound bound{};
   bound.per_radius = bound.per_distance = (bending + 1.5 * turning * turning) * kUpward;
   bound.constant = (largest(splineAccelerationAt(translation_points_, t0),

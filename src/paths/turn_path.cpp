@@ -76,6 +76,7 @@ MotionPath MotionPath::turnFrom(const Pose& beginning, const Pose& end,
     path.turn_.axis = -1. * path.turn_.axis;
     path.turn_.angle = 2 * M_PI - path.turn_.angle;
   }
+  assert(isUnit(path.turn_.axis) && 0 <= path.turn_.angle && path.turn_.angle < 3.2);
   path.stretch_ =
       std::max(spectralBound(beginning.rotation), spectralBound(end.rotation));
   if (path.turn_.angle > 0) {
@@ -103,6 +104,7 @@ void MotionPath::reachEnd(const Pose& end) {
   stretch_ =
       (spectralBound(turn_.beginning.rotation) + frobenius(turn_.linear_rotation)) *
       kUpward;
+  assert(!(longestColumn(end.rotation) > stretch_ * kUpward));
 }
 
 namespace {
@@ -144,6 +146,7 @@ MotionPath MotionPath::screw(const Pose& beginning, const Pose& end,
     const Vec way = vecOf(end.translation) - vecOf(beginning.translation);
     const Vec across = way - dot(way, path.turn_.axis) * path.turn_.axis;
     const SineCosine half = sineCosine(0.5 * path.turn_.angle);
+    assert(half.sine > 0);
     const Vec turning =
         0.5 * ((half.cosine / half.sine) * across - cross(path.turn_.axis, across));
     set(path.turn_.sine_translation, turning);
@@ -156,6 +159,7 @@ MotionPath MotionPath::screw(const Pose& beginning, const Pose& end,
 }
 
 MotionPath MotionPath::withFixedRotation() const {
+  assert(kind_ == Kind::kTurn);
   MotionPath path = *this;
   Turn& turn = path.turn_;
   for (auto* matrix : {&turn.sine_rotation, &turn.cosine_rotation, &turn.linear_rotation})
@@ -168,6 +172,7 @@ MotionPath MotionPath::withFixedRotation() const {
 }
 
 MotionPath MotionPath::withoutTurn() const {
+  assert(kind_ == Kind::kTurn);
   MotionPath path = *this;
   for (auto* vector : {&path.turn_.sine_translation, &path.turn_.cosine_translation})
     std::fill(std::begin(*vector), std::end(*vector), 0.);
@@ -180,6 +185,7 @@ MotionPath MotionPath::withoutTurn() const {
 // sizes up to 1, 1, 2 and a rounding, by 36 u. M t_o rounds by 6 u of |t_o|, the sum by u
 // of its size.
 MotionPath MotionPath::placed(const Pose& offset) const {
+  assert(kind_ == Kind::kTurn && isRotation(offset.rotation, 0x1p-44));
   MotionPath path = *this;
   Turn& turn = path.turn_;
   const Vec shift = vecOf(offset.translation);
@@ -241,6 +247,8 @@ Pose MotionPath::turnPose(double t) const {
         turn_.beginning.translation[k] +
         (at.sine * turn_.sine_translation[k] + at.cosine * turn_.cosine_translation[k] +
          t * turn_.linear_translation[k]);
+  assert(!isTimeOfStep(t) ||
+         !(norm(vecOf(out.translation)) > largest_translation_ * kUpward + 0x1p-500));
   return out;
 }
 
@@ -254,6 +262,10 @@ PoseRate MotionPath::turnRate(double t) const {
   for (int k = 0; k < 3; ++k)
     out.translation[k] = cosine * turn_.sine_translation[k] +
                          sine * turn_.cosine_translation[k] + turn_.linear_translation[k];
+  assert(!(longestColumn(out.rotation) >
+           turn_speed_ * kUpward + rotationRateError() + 0x1p-500));
+  assert(!(norm(vecOf(out.translation)) >
+           translation_speed_ * kUpward + rateError(0) + 0x1p-500));
   return out;
 }
 
@@ -264,6 +276,7 @@ double MotionPath::axisAcceleration(double displacement) const {
 }
 
 PoseRate MotionPath::turnAccelerationAt(double t) const {
+  assert(kind_ == Kind::kTurn);
   const SineCosine at = turn_.angle == 0 ? SineCosine{0, 0} : sineCosine(turn_.angle * t);
   const double square = turn_.angle * turn_.angle, sine = -square * at.sine,
                cosine = square * at.cosine;
@@ -273,6 +286,10 @@ PoseRate MotionPath::turnAccelerationAt(double t) const {
   for (int k = 0; k < 3; ++k)
     out.translation[k] =
         sine * turn_.sine_translation[k] + cosine * turn_.cosine_translation[k];
+  // P and Q round by a few u of the reference point, of which they may be a small part.
+  assert(!(norm(vecOf(out.translation)) > turnAcceleration().of({0, 0, 0}, 0) * kUpward +
+                                              16 * kUnit * square * reference_size_ +
+                                              0x1p-500));
   return out;
 }
 

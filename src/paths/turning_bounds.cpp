@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "paths/turning_bounds.h"
 
+#include <cassert>
+
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -15,7 +17,11 @@ double largestValue(const Coefficients& p) {
   double most = 0;
   for (int i = 0; i < kParts; ++i)
     most = std::max(most, std::abs(valueAt(p, (i + 0.5) / kParts)));
-  return most * kUpward + largestValue(slope) * (0.5 / kParts) + 0x1p-10 * sizeOf(p);
+  const double bound =
+      most * kUpward + largestValue(slope) * (0.5 / kParts) + 0x1p-10 * sizeOf(p);
+  // The ends are not among the places that were looked at.
+  assert(!(std::abs(p[0]) > bound) && !(std::abs(valueAt(p, 1)) > bound));
+  return bound;
 }
 
 DerivativeBounds derivativeBounds(const Coefficients& p) {

@@ -6,6 +6,7 @@
 #define FCL_CCD_PATHS_TURNING_BOUNDS_H
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <vector>
 
@@ -67,6 +68,7 @@ inline DerivativeBounds boundsOfTurn(const DerivativeBounds& angle) {
 /// `size`: another rotation, or a vector.
 inline DerivativeBounds boundsOfProduct(const DerivativeBounds& rotation,
                                         const DerivativeBounds& factor, double size) {
+  assert(!(size < 0));
   return {(rotation.first * size + factor.first) * kUpward,
           (rotation.second * size + 2 * rotation.first * factor.first + factor.second) *
               kUpward,

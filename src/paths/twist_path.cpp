@@ -15,6 +15,8 @@
 // |T1|. q' is within 15 + 16 + 25 + 6 + 8 u |v| and the error of the angle.
 #include "paths/twist_path.h"
 
+#include <cassert>
+
 #include "base/default_floating_point.h"
 #include "numerics/error_bounds.h"
 #include "paths/path_matrix.h"
@@ -32,6 +34,7 @@ TwistPath::TwistPath(const Pose& pose, const Vec& linear, const Vec& angular,
       straight_(linear),
       reference_size_(norm(reference)),
       speed_(norm(linear)) {
+  assert(isRotation(pose.rotation, 0x1p-44) && !(angle_ > kMostAngle));
   // The square of a smaller angle loses digits. Such a turn moves a point by less than
   // the rounding of its coordinates.
   constexpr double kLeastAngle = 0x1p-200;
@@ -41,6 +44,7 @@ TwistPath::TwistPath(const Pose& pose, const Vec& linear, const Vec& angular,
   }
   Vec axis = (1 / angle_) * angular;
   axis = (1 / norm(axis)) * axis;
+  assert(isUnit(axis));
   crossColumns(axis, pose.rotation, sine_rotation_);
   crossColumns(axis, sine_rotation_, cosine_rotation_);
   sine_reference_ = rotated(sine_rotation_, reference);
@@ -48,6 +52,7 @@ TwistPath::TwistPath(const Pose& pose, const Vec& linear, const Vec& angular,
   if (!is_screw) return;
   straight_ = dot(linear, axis) * axis;
   sine_way_ = linear - straight_;
+  assert(!(std::abs(dot(axis, sine_way_)) > 0x1p-46 * speed_ + 0x1p-500));
   cosine_way_ = cross(axis, sine_way_);
 }
 
@@ -66,6 +71,7 @@ BoundedMotion::Placement TwistPath::placementAt(double t) const {
     at = at + (way - (turn.sine * sine_reference_ + turn.cosine * cosine_reference_));
   }
   set(out.translation, at);
+  assert(isRotation(out.rotation, 0x1p-42));
   return out;
 }
 

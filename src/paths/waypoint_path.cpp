@@ -21,11 +21,13 @@
 #include "paths/waypoint_path.h"
 
 #include <algorithm>
+#include <cassert>
 #include <memory>
 #include <utility>
 
 #include "base/default_floating_point.h"
 #include "numerics/error_bounds.h"
+#include "paths/path_matrix.h"
 #include "paths/posed_vector.h"
 
 namespace fcl {
@@ -52,6 +54,7 @@ Quaternion quaternionOf(const Vec& w) {
 /// The rotation of a quaternion of any length.
 void setRotation(const Quaternion& q, double (&r)[9]) {
   const double factor = 2 / (dot(q.v, q.v) + q.s * q.s);
+  assert(0 < factor && factor < HUGE_VAL);
   const double v[3] = {q.v.x, q.v.y, q.v.z};
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -59,6 +62,7 @@ void setRotation(const Quaternion& q, double (&r)[9]) {
     r[3 * i + j] = factor * (v[i] * v[j] - q.s * v[k]);
     r[3 * i + k] = factor * (v[i] * v[k] + q.s * v[j]);
   }
+  assert(isRotation(r, 0x1p-44));
 }
 
 /// The weighted harmonic mean of two velocities; 0 if they have not the same sign.
@@ -67,13 +71,18 @@ double velocityBetween(double before, double after, double time_before,
   if (before == 0 || after == 0 || (before > 0) != (after > 0)) return 0;
   const double weight_before = time_before + 2 * time_after,
                weight_after = 2 * time_before + time_after;
-  return (weight_before + weight_after) / (weight_before / before + weight_after / after);
+  const double mean =
+      (weight_before + weight_after) / (weight_before / before + weight_after / after);
+  // A steeper one would let a cubic pass its ends.
+  assert(!(std::abs(mean) > 3 * std::min(std::abs(before), std::abs(after)) * kUpward));
+  return mean;
 }
 
 /// The velocities at waypoints: at the ends, those of the pieces there.
 /// @param changes, times  of the pieces
 std::vector<Vec> velocitiesAt(const std::vector<Vec>& changes,
                               const std::vector<double>& times) {
+  assert(!times.empty() && changes.size() == times.size());
   std::vector<Vec> speeds;
   for (std::size_t i = 0; i < times.size(); ++i)
     speeds.push_back((1 / times[i]) * changes[i]);
@@ -86,6 +95,7 @@ std::vector<Vec> velocitiesAt(const std::vector<Vec>& changes,
     out.push_back({mean(x.x, y.x), mean(x.y, y.y), mean(x.z, y.z)});
   }
   out.push_back(speeds.back());
+  assert(out.size() == times.size() + 1);
   return out;
 }
 
@@ -143,6 +153,7 @@ std::vector<WaypointPath::Waypoint> WaypointPath::waypointsOf(
 
 WaypointPath::Piece WaypointPath::makePiece(const Waypoint& x, const Waypoint& y) {
   const double duration = y.t - x.t;
+  assert(duration >= kLeastPieceTime);
   const Vec way = y.position - x.position, begin = duration * x.velocity,
             end = duration * y.velocity, w1 = (duration / 3) * x.angular_velocity,
             w3 = (duration / 3) * y.angular_velocity;
@@ -154,6 +165,8 @@ WaypointPath::Piece WaypointPath::makePiece(const Waypoint& x, const Waypoint& y
   setRotation(x.rotation, rotation.rotation);
   chain.tree.add(JointTree::Type::kFixed, rotation, {}, chain.last());
   const Quaternion turn = inverse(x.rotation) * y.rotation;
+  // They turn by less than the whole piece.
+  assert(!(std::max(norm(w1), norm(w3)) > turningOf(turn).angle * kUpward));
   chain.turn(turningBy(w1), {0, 3, -3, 1});
   chain.turn(turningOf(inverse(quaternionOf(w1)) * turn * inverse(quaternionOf(w3))),
              {0, 0, 3, -2});
@@ -176,6 +189,8 @@ WaypointPath::Piece WaypointPath::makePiece(const Waypoint& x, const Waypoint& y
 
 WaypointPath::WaypointPath(const std::vector<Pose>& poses,
                            const std::vector<double>& times) {
+  assert(poses.size() >= 2 && times.size() == poses.size());
+  assert(times.front() == 0 && times.back() == 1);
   const std::vector<Waypoint> waypoints = waypointsOf(poses, times);
   for (std::size_t i = 1; i < waypoints.size(); ++i) {
     pieces_.push_back(makePiece(waypoints[i - 1], waypoints[i]));
@@ -191,6 +206,7 @@ const WaypointPath::Piece& WaypointPath::pieceAt(double t) const {
   const auto after =
       std::upper_bound(pieces_.begin() + 1, pieces_.end(), t,
                        [](double time, const Piece& p) { return time < p.begin; });
+  assert(!isTimeOfStep(t) || isTimeOfStep((after - 1)->atTime(t)));
   return *(after - 1);
 }
 
@@ -217,6 +233,7 @@ double WaypointPath::largest(double t0, double t1, const Bound& bound) const {
     // A little longer than the part of the span in this piece: its ends round.
     const double s0 = std::max(piece->atTime(t0) - 8 * kUnit, 0.),
                  s1 = std::min(piece->atTime(t1) + 8 * kUnit, 1.);
+    assert(!isPartOfStep(t0, t1) || isPartOfStep(s0, s1));
     most = std::max(most, bound(*piece, s0, s1));
     ++piece;
   } while (piece != pieces_.data() + pieces_.size() && piece->begin < t1);
