@@ -39,6 +39,9 @@ struct alignas(64) BodyBoxes {
   double displacement[kWidth];
 
   void set(int lane, const BodyBox& box) {
+    assert(0 <= lane && lane < kWidth);
+    assert(!(box.pad < 0) && !(box.extent[0] < 0) && !(box.extent[1] < 0) &&
+           !(box.extent[2] < 0));
     for (int k = 0; k < 3; ++k) {
       center[k][lane] = box.center[k];
       extent[k][lane] = box.extent[k];
@@ -49,6 +52,7 @@ struct alignas(64) BodyBoxes {
     displacement[lane] = box.displacement;
   }
   BodyBox get(int lane) const {
+    assert(0 <= lane && lane < kWidth);
     BodyBox box;
     for (int k = 0; k < 3; ++k) {
       box.center[k] = center[k][lane];
@@ -94,6 +98,31 @@ struct MeetingWindows {
   /// The largest of the gaps along directions, less their margins: the least of each one
   /// during the span. Set by what measures gaps, also for boxes that are apart.
   double gap[BodyBoxes::kWidth];
+
+  /// @brief Whether the boxes are among the first `count`, and their windows begin and
+  /// end in the span. For assertions, as those below.
+  bool areInSpan(int count) const {
+    bool are = mask >> count == 0;
+    for (unsigned bits = mask; are && bits != 0; bits &= bits - 1) {
+      const int lane = lowestBit(bits);
+      are = !(lo[lane] < 0 || lo[lane] > 1) && !(hi[lane] < 0 || hi[lane] > 1);
+    }
+    return are;
+  }
+  /// @brief Whether no window ends before it begins, up to rounding.
+  bool areOrdered() const {
+    bool are = true;
+    for (unsigned bits = mask; bits != 0; bits &= bits - 1)
+      are &= !(lo[lowestBit(bits)] > hi[lowestBit(bits)] + 0x1p-50);
+    return are;
+  }
+  /// @brief Whether all boxes with a gap are known to be apart.
+  bool haveNoGap() const {
+    bool have = true;
+    for (unsigned bits = mask; bits != 0; bits &= bits - 1)
+      have &= !(gap[lowestBit(bits)] > 0);
+    return have;
+  }
 };
 
 /// @brief What is known of the triangles of a node beside a triangle of the other side.
@@ -106,6 +135,7 @@ struct TriangleHalves {
   unsigned left() const { return ~tested | meeting[0] | meeting[1]; }
 
   void narrow(MeetingWindows& windows) const {
+    assert(((meeting[0] | meeting[1]) & ~tested) == 0);
     windows.mask &= left();
     for (unsigned bits = windows.mask & tested; bits != 0; bits &= bits - 1) {
       const int lane = lowestBit(bits);
@@ -121,6 +151,7 @@ struct TriangleHalves {
 /// outward.
 /// @return whether there is such a part
 inline bool narrowWindow(double first, double last, double& lo, double& hi) {
+  assert(!(lo < 0) && !(hi > 1));
   if (first > 0 && last > 0) return false;
   const double root = first / (first - last);
   // A gap that changes its sign does so within the span.

@@ -3,6 +3,7 @@
 #define FCL_CCD_SHAPES_BOX_CORE_H
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "shapes/core.h"
@@ -19,6 +20,7 @@ struct BoxCore : Core {
     return (d.x > 0 ? 1 : 0) + (d.y > 0 ? 2 : 0) + (d.z > 0 ? 4 : 0);
   }
   Vec supportOf(int piece, const Vec&) const {
+    assert(0 <= piece && piece < 8);
     return {piece % 2 == 0 ? -size.x : size.x, piece / 2 % 2 == 0 ? -size.y : size.y,
             piece < 4 ? -size.z : size.z};
   }

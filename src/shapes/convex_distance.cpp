@@ -112,9 +112,11 @@ Nearest nearestTo(const Simplex& s) {
 
 /// Keeps the vertices that hold the nearest point.
 void reduce(const Nearest& nearest, Simplex& s) {
+  assert(1 <= nearest.count && nearest.count <= 3);
   Simplex out;
   out.count = nearest.count;
   for (int i = 0; i < nearest.count; ++i) {
+    assert(nearest.vertex[i] < s.count && nearest.weight[i] > 0);
     out.vertex[i] = s.vertex[nearest.vertex[i]];
     out.weight[i] = nearest.weight[i];
   }
@@ -227,6 +229,7 @@ class GapSearch {
       const Vec change = d.between - simplex_.vertex[i].between;
       if (maxNorm(change) == 0) return false;
     }
+    assert(simplex_.count < 4);
     simplex_.vertex[simplex_.count++] = d;
     return true;
   }
@@ -293,6 +296,7 @@ class GapSearch {
   void setPoints(double distance) {
     double sum = 0;
     for (int i = 0; i < simplex_.count; ++i) sum += simplex_.weight[i];
+    assert(!(sum <= 0));
     for (int side = 0; side < 2; ++side) {
       Vec point{0, 0, 0};
       unsigned corners = 0;
@@ -317,8 +321,11 @@ class GapSearch {
 
 ConvexGap convexGap(const PosedConvex& a, const PosedConvex& b, const Vec& guess,
                     double enough, double contact) {
+  assert(!(enough < 0));
   const ConvexGap gap = GapSearch(a, b, enough, contact).run(guess);
   assert(isConsistent(a, b, gap));
+  assert(isUnit(gap.direction) || maxNorm(gap.direction) == 0);
+  assert(!(gap.distance < 0) && !(gap.depth < 0));
   return gap;
 }
 

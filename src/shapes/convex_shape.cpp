@@ -36,9 +36,15 @@ namespace {
   return true;
 }
 
+[[maybe_unused]] bool isPowerOfTwo(double x) {
+  int exponent;
+  return std::frexp(x, &exponent) == 0.5;
+}
+
 }  // namespace
 
 ConvexShape ConvexShape::flat(const FlatShape& flat, double other_radius) {
+  assert(isUnit(flat.normal) && !(other_radius < 0));
   const Vec foot = flat.foot();
   ConvexShape shape(BoxCore({0, 0, 0}));
   // It has neither points nor an axis.
@@ -53,6 +59,7 @@ ConvexShape ConvexShape::flat(const FlatShape& flat, double other_radius) {
 }
 
 ConvexShape ConvexShape::scaled(double factor, double other_radius) const {
+  assert(isPowerOfTwo(factor));
   if (flat_)
     return flat({flat_->normal, factor * flat_->offset, flat_->is_solid}, other_radius);
   AnyCore core = core_;
@@ -93,11 +100,13 @@ int ConvexShape::pieceAt(const Vec& d) const {
 }
 
 Vec ConvexShape::supportOf(int piece, const Vec& d) const {
+  assert(!flat_);
   return std::visit([piece, &d](const auto& of) { return of.supportOf(piece, d); },
                     core_);
 }
 
 Vec ConvexShape::supportChange(int piece, const Vec& d, const Vec& change) const {
+  assert(!flat_);
   return std::visit([&](const auto& of) { return of.supportChange(piece, d, change); },
                     core_);
 }
@@ -115,8 +124,12 @@ BodyBox ConvexShape::outerBox() const {
 }
 
 double ConvexShape::innerRadius(double factor) const {
-  return radius_ +
-         factor * std::visit([](const auto& of) { return of.innerRadius(); }, core_);
+  assert(0 <= factor && factor <= 1);
+  const double inner =
+      radius_ +
+      factor * std::visit([](const auto& of) { return of.innerRadius(); }, core_);
+  assert(!(inner > outerRadius() * kUpward + 0x1p-500));
+  return inner;
 }
 
 void ConvexShape::setBox() {

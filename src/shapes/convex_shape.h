@@ -4,6 +4,7 @@
 #ifndef FCL_CCD_SHAPES_CONVEX_SHAPE_H
 #define FCL_CCD_SHAPES_CONVEX_SHAPE_H
 
+#include <cassert>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -36,6 +37,7 @@ class ConvexShape {
   template <typename OneCore>
   explicit ConvexShape(OneCore core, double radius = 0)
       : core_(std::move(core)), radius_(radius) {
+    assert(radius >= 0);
     setBox();
   }
 
@@ -149,6 +151,7 @@ class ConvexShape {
 /// @brief The distance of the cores at which the surfaces of two shapes are at a
 /// distance. Null: what has no radius.
 inline double coreDistance(const ConvexShape* a, const ConvexShape* b, double distance) {
+  assert(!(distance < 0));
   return distance + (a ? a->radius() : 0) + (b ? b->radius() : 0);
 }
 

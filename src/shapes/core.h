@@ -5,6 +5,7 @@
 #define FCL_CCD_SHAPES_CORE_H
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "numerics/moving_vector.h"
@@ -27,6 +28,11 @@ struct CoreBox {
 ///  - `double reach(d)`: the coordinate of that point along the direction, up to rounding
 ///    by 2^-49 of the size, if the direction is not longer than 2.
 struct Core {
+  /// @param half_sides  0 or more
+  explicit Core(const Vec& half_sides) : size(half_sides) {
+    assert(size.x >= 0 && size.y >= 0 && size.z >= 0);
+  }
+
   /// Half the sides of the box, which is around the origin.
   Vec size;
 
@@ -62,6 +68,7 @@ inline double anyNorm(const Vec& v) {
 /// @brief The farthest point of a circle around the z axis; and its coordinate, if the
 /// circle is in the plane of the origin.
 inline Vec onCircle(double radius, double height, const Vec& d) {
+  assert(radius >= 0);
   const double length = anyNorm({d.x, d.y, 0});
   if (!(length > 0)) return {0, 0, height};
   return {radius * (d.x / length), radius * (d.y / length), height};

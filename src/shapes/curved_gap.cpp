@@ -2,6 +2,7 @@
 #include "shapes/curved_gap.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "paths/posed_vector.h"
@@ -10,6 +11,14 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
+
+/// Whether unit vectors are at right angles to each other, up to rounding; also if they
+/// are NaN. For assertions.
+[[maybe_unused]] bool areAtRightAngles(const Vec& x, const Vec& y, const Vec& z) {
+  constexpr double kMost = 0x1p-46;
+  return isUnit(x) && isUnit(y) && isUnit(z) && !(std::abs(dot(x, y)) > kMost) &&
+         !(std::abs(dot(y, z)) > kMost) && !(std::abs(dot(z, x)) > kMost);
+}
 
 /// Two unit vectors at right angles to a unit vector and to each other. Those of the
 /// opposite vector are their opposites, so that the order of the sets does not matter.
@@ -24,6 +33,7 @@ void setAxes(const Vec& n, Vec (&axis)[2]) {
   }
   axis[0] = unit(across[0]);
   axis[1] = unit(across[1] - dot(across[1], axis[0]) * axis[0]);
+  assert(areAtRightAngles(n, axis[0], axis[1]));
 }
 
 }  // namespace
@@ -57,11 +67,24 @@ void CurvedGapSearch::keepActive(const Step& step) {
     piece_[count++].weight = step.weight[i];
   }
   count_ = count;
+  assert(count_ == 0 || (count_ < kMostPieces && haveAllWeight()));
+}
+
+/// Whether the weights of the pieces are shares of one. For assertions.
+bool CurvedGapSearch::haveAllWeight() const {
+  double sum = 0;
+  bool are_shares = true;
+  for (int i = 0; i < count_; ++i) {
+    sum += piece_[i].weight;
+    are_shares &= 0 <= piece_[i].weight && piece_[i].weight <= 1;
+  }
+  return are_shares && std::abs(sum - 1) <= 0x1p-48;
 }
 
 /// Notes the points.
 /// @return whether the search ends
 bool CurvedGapSearch::note(ConvexGap& out) const {
+  assert(haveAllWeight());
   for (int side = 0; side < 2; ++side) {
     Vec point{0, 0, 0};
     out.corners[side] = 0;
@@ -108,6 +131,7 @@ CurvedGapSearch::Model CurvedGapSearch::modelAt(const Vec& n, double damping) co
 CurvedGapSearch::Step CurvedGapSearch::bestStep(const Model& model) const {
   const double(&m)[3] = model.m;
   const double m_determinant = m[0] * m[2] - m[1] * m[1];
+  assert(m[0] + m[2] > 0 && m_determinant >= 0);
   Step best{0, 0, -HUGE_VAL, {}};
   const auto keep = [&](double x, double y, const int(&id)[3], const double(&weight)[3]) {
     double least = HUGE_VAL;
@@ -231,6 +255,7 @@ void CurvedGapSearch::setCorners(const Vec& n, const Model& model, double gap,
 /// Looks for a tetrahedron around the origin.
 bool CurvedGapSearch::overlaps(const Vec& n, const Model& model, double gap,
                                ConvexGap& out) const {
+  assert(!(gap > 0) && 1 <= count_ && count_ <= 3);
   Corner corner[4];
   setCorners(n, model, gap, corner);
   Vec vertex[4];
@@ -240,6 +265,7 @@ bool CurvedGapSearch::overlaps(const Vec& n, const Model& model, double gap,
   if (!(depth > 0)) return false;
   out.depth = depth;
   const double sum = weight[0] + weight[1] + weight[2] + weight[3];
+  assert(!(sum <= 0));
   for (int side = 0; side < 2; ++side) {
     out.point[side] = {0, 0, 0};
     for (int i = 0; i < 4; ++i)
@@ -263,6 +289,7 @@ bool CurvedGapSearch::run(const Vec& guess, ConvexGap& out) {
                    kLeastResidual = 0x1p-46;
   // The share of the curvature from which on the sets overlap too much for this method.
   constexpr double kDeep = 0x1p-2;
+  assert(isUnit(guess));
   Vec n = guess;
   piece_[0] = pieceAt(n);
   piece_[0].weight = 1;
@@ -300,6 +327,7 @@ bool CurvedGapSearch::run(const Vec& guess, ConvexGap& out) {
     if (!isKnown(met)) {
       met.weight = 0;
       if (!is_better) setPoints(n, met);
+      assert(count_ < kMostPieces);
       piece_[count_++] = met;
     } else if (!is_better) {
       if (is_best) return false;

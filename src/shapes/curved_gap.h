@@ -59,6 +59,7 @@ class CurvedGapSearch {
   void setPoints(const Vec& n, Piece& piece) const;
   Piece pieceAt(const Vec& n) const;
   bool isKnown(const Piece& piece) const;
+  bool haveAllWeight() const;
   void keepActive(const Step& step);
   bool note(ConvexGap& out) const;
   double residualAt(const Vec& n) const;

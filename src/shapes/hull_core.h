@@ -3,6 +3,7 @@
 #define FCL_CCD_SHAPES_HULL_CORE_H
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -22,6 +23,7 @@ struct HullCore : Core {
       : Core{{0, 0, 0}}, points(std::move(vertices)) {}
 
   int pieceAt(const Vec& d) const {
+    assert(!points.empty());
     std::size_t farthest = 0;
     double most = dot(points.front(), d);
     for (std::size_t i = 1; i < points.size(); ++i) {
@@ -33,6 +35,7 @@ struct HullCore : Core {
     return static_cast<int>(farthest);
   }
   Vec supportOf(int piece, const Vec&) const {
+    assert(0 <= piece && static_cast<std::size_t>(piece) < points.size());
     return points[static_cast<std::size_t>(piece)];
   }
   double reach(const Vec& d) const { return dot(supportOf(pieceAt(d), d), d); }
@@ -42,6 +45,7 @@ struct HullCore : Core {
     double center[3], half_side[3];
     for (int i = 0; i < 3; ++i) {
       const double upper = reach(kAxes[i]), lower = -reach(-1. * kAxes[i]);
+      assert(lower <= upper);
       center[i] = 0.5 * (upper + lower);
       half_side[i] = 0.5 * (upper - lower);
     }

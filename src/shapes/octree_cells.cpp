@@ -18,6 +18,7 @@ namespace {
 /// Child i of a cell. The key of a cell is that of the cell of the greatest depth at its
 /// center. A cell of the greatest depth has its own key.
 OctreeCellNumber childOf(const OctreeCellNumber& parent, unsigned i) {
+  assert(parent.depth < OctreeCellNumber::kDepth && i < 8);
   OctreeCellNumber child{{}, parent.depth + 1};
   const unsigned below = OctreeCellNumber::kDepth - child.depth;
   for (unsigned k = 0; k < 3; ++k) {
@@ -65,6 +66,12 @@ void OctreeCells::Bounds::add(const Bounds& other) {
   }
 }
 
+bool OctreeCells::Bounds::contains(const Bounds& other) const {
+  for (int k = 0; k < 3; ++k)
+    if (other.lower[k] < lower[k] || other.upper[k] > upper[k]) return false;
+  return true;
+}
+
 OctreeCells::OctreeCells(std::unique_ptr<const OctreeNodes> nodes, double root_size,
                          std::string name)
     : nodes_(std::move(nodes)), root_size_(root_size), name_(std::move(name)) {
@@ -91,14 +98,20 @@ OctreeCells::Children OctreeCells::addChildren(std::int32_t node) {
     for (unsigned i = 0; i < 8; ++i)
       if (children[i]) add(children[i], childOf(parent.name, i));
   }
+  assert(std::all_of(table_.begin() + first, table_.end(), [&](const Node& child) {
+    return Bounds::of(parent.name).contains(child.bounds);
+  }));
   Node& opened = at(node);
   opened.first_child = first;
   opened.num_children = static_cast<std::int32_t>(table_.size()) - first;
+  assert(0 <= opened.num_children && opened.num_children <= 8);
   return {first, opened.num_children};
 }
 
 OctreeCells::Children OctreeCells::open(std::int32_t node) {
+  assert(!isLeaf(node));
   lookBelow(node, 1 + kLevelsAhead);
+  assert(at(node).num_children >= 0);
   return {at(node).first_child, at(node).num_children};
 }
 
@@ -114,9 +127,11 @@ void OctreeCells::lookBelow(std::int32_t node, int levels) {
 
 void OctreeCells::fit(std::int32_t node) {
   const Node& parent = at(node);
+  assert(parent.num_children >= 0);
   Bounds bounds = Bounds::none();
   for (std::int32_t i = 0; i < parent.num_children; ++i)
     bounds.add(at(parent.first_child + i).bounds);
+  assert(parent.bounds.contains(bounds));
   at(node).bounds = bounds;
 }
 
@@ -168,7 +183,8 @@ double OctreeCells::reach(std::int32_t node, const Vec& direction) const {
 }
 
 const ConvexShape& OctreeCells::cell(std::int32_t leaf) {
-  Node& node = table_[static_cast<std::size_t>(leaf)];
+  Node& node = at(leaf);
+  assert(node.is_leaf);
   if (node.shape >= 0) return shapes_[static_cast<std::size_t>(node.shape)];
   const double size = node.name.size(root_size_);
   // Neighbours have equal corners.

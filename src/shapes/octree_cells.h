@@ -4,6 +4,7 @@
 #ifndef FCL_CCD_SHAPES_OCTREE_CELLS_H
 #define FCL_CCD_SHAPES_OCTREE_CELLS_H
 
+#include <cassert>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -26,11 +27,14 @@ struct OctreeCellNumber {
   unsigned depth;
 
   std::int64_t toNumber() const {
+    assert(depth <= kDepth);
     std::int64_t number = depth;
     for (int k = 2; k >= 0; --k) number = number << 16 | key[k];
     return number;
   }
+  /// @pre isNumber(number)
   static OctreeCellNumber of(std::int64_t number) {
+    assert(isNumber(number));
     OctreeCellNumber out;
     for (int k = 0; k < 3; ++k)
       out.key[k] = static_cast<std::uint16_t>(number >> (16 * k) & 0xffff);
@@ -44,6 +48,7 @@ struct OctreeCellNumber {
   /// @brief The place of the cell along an axis among the cells of its depth, less half
   /// of their number: the cell is from index(k) to index(k) + 1 times its size.
   double index(int k) const {
+    assert(depth <= kDepth);
     return static_cast<double>(key[k] >> (kDepth - depth)) - 0.5 * (1U << depth);
   }
   /// @brief The size of the cell.
@@ -111,6 +116,8 @@ class OctreeCells {
     static Bounds of(const OctreeCellNumber& name);
     static Bounds none();
     void add(const Bounds& other);
+    /// For assertions.
+    bool contains(const Bounds& other) const;
   };
   struct Node {
     const void* node;
@@ -126,9 +133,13 @@ class OctreeCells {
     bool is_leaf;
   };
   const Node& at(std::int32_t node) const {
+    assert(0 <= node && static_cast<std::size_t>(node) < table_.size());
     return table_[static_cast<std::size_t>(node)];
   }
-  Node& at(std::int32_t node) { return table_[static_cast<std::size_t>(node)]; }
+  Node& at(std::int32_t node) {
+    assert(0 <= node && static_cast<std::size_t>(node) < table_.size());
+    return table_[static_cast<std::size_t>(node)];
+  }
   void add(const void* node, const OctreeCellNumber& name);
   Children addChildren(std::int32_t node);
   void lookBelow(std::int32_t node, int levels);

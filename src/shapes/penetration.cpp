@@ -81,6 +81,7 @@ class LeastReach {
   void addPoint(const Vec& point) {
     for (int i = 0; i < count_; ++i)
       if (maxNorm(s_[i] - point) == 0) return;
+    assert(count_ < 4);
     s_[count_++] = point;
   }
 
@@ -148,6 +149,7 @@ class PenetrationSearch {
       divide(cell, near);
     }
     if (best_cell_ && !polish()) sharpen(*best_cell_);
+    assert(isUnit(best_.direction) || !(best_.depth < HUGE_VAL));
     return best_;
   }
 
@@ -199,9 +201,13 @@ class PenetrationSearch {
   }
 
   void add(Cell cell, double near) {
+    // By the right-hand rule, up to rounding.
+    assert(!(dot(cell.corner[0].direction,
+                 cross(cell.corner[1].direction, cell.corner[2].direction)) < -0x1p-48));
     const double enough = best_.depth - near;
     if (!(LeastReach::lowerBound(cell) < enough)) return;
     cell.setLeast();
+    assert(!(LeastReach::lowerBound(cell) > cell.least + 0x1p-30 * size_));
     if (!(cell.least < enough)) return;
     cells_.push_back(cell);
     std::push_heap(cells_.begin(), cells_.end());

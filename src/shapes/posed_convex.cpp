@@ -2,8 +2,10 @@
 #include "shapes/posed_convex.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
+#include "numerics/error_bounds.h"
 #include "paths/posed_vector.h"
 
 namespace fcl {
@@ -21,6 +23,15 @@ Vec cornerOf(const BodyBox& box, const Vec& d) {
   return corner;
 }
 
+/// Whether a ball around the origin that is inside of a tetrahedron reaches no corner,
+/// and the origin is a mean of these. For assertions.
+[[maybe_unused]] bool isDepthInside(const Vec (&corner)[4], const double (&weight)[4],
+                                    double depth) {
+  for (int i = 0; i < 4; ++i)
+    if (weight[i] < 0 || depth > norm(corner[i]) * kUpward + 0x1p-500) return false;
+  return true;
+}
+
 }  // namespace
 
 Vec PosedConvex::support(const Vec& direction, int& id) const {
@@ -35,6 +46,7 @@ Vec PosedConvex::support(const Vec& direction, int& id) const {
 }
 
 int PosedConvex::pieceAt(const Vec& direction) const {
+  assert(!box);
   if (shape) return shape->pieceAt(rotatedBack(pose.rotation, direction));
   double most = -HUGE_VAL;
   int farthest = 0;
@@ -48,6 +60,7 @@ int PosedConvex::pieceAt(const Vec& direction) const {
 }
 
 Vec PosedConvex::supportOf(int piece, const Vec& direction) const {
+  assert(!box && piece >= 0 && (shape || piece < 3));
   if (!shape) return corner[piece];
   return posed(pose, shape->supportOf(piece, rotatedBack(pose.rotation, direction)));
 }
@@ -101,6 +114,7 @@ double depthInside(const Vec (&corner)[4], double (&weight)[4]) {
     least = std::min(least, (opposite > 0 ? origin : -origin) - error);
     weight[i] = origin / opposite;
   }
+  assert(!(least > 0) || isDepthInside(corner, weight, least));
   return std::max(least, 0.);
 }
 
