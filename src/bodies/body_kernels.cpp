@@ -3,6 +3,7 @@
 // Boxes that turn against each other, eight pairs at once.
 #include "shapes/body_boxes.h"
 
+#include <cassert>
 #include <cmath>
 
 #if defined(FCL_CCD_USE_HIGHWAY)
@@ -101,6 +102,13 @@ FCL_CCD_INLINE Doubles lossOf(const Doubles& first, const Doubles& middle,
   return select(past_middle, half, zero) + half * (from / (from - to));
 }
 
+/// Whether none of the numbers of pairs is negative. For assertions.
+[[maybe_unused]] inline bool areNotNegative(const double (&x)[8], int count) {
+  for (int i = 0; i < count; ++i)
+    if (x[i] < 0) return false;
+  return true;
+}
+
 /// Uses the side of b's center at the beginning, and the side at the end.
 template <bool kMeasuresGaps>
 FCL_CCD_INLINE void addLosses(const Projection (&p)[3], const Doubles& margin,
@@ -126,6 +134,7 @@ void meetingWindows(const BodyBox* const (&a)[3], const SpanPoses& pose_a,
                     const BodyBoxes* const (&b)[3], const SpanPoses& pose_b,
                     const double (&margin)[8], const CalmDirection (&calm)[2], int count,
                     MeetingWindows& out) {
+  assert(0 < count && count <= BodyBoxes::kWidth && areNotNegative(margin, count));
   const WorldBox a0 = inWorld(*a[0], pose_a.beginning),
                  am = inWorld(*a[1], pose_a.middle), a1 = inWorld(*a[2], pose_a.end);
   const Doubles zero = all(0), one = all(1);
@@ -166,6 +175,9 @@ void meetingWindows(const BodyBox* const (&a)[3], const SpanPoses& pose_a,
   store(losses.before, out.lo);
   store(one - losses.after, out.hi);
   if (kMeasuresGaps) store(losses.gap, out.gap);
+  assert(out.areInSpan(count) && out.areOrdered());
+  // A gap at all three times is one in the whole span.
+  assert(!kMeasuresGaps || out.haveNoGap());
 }
 
 /// Corners at the beginning, in the middle and at the end of a span.
@@ -255,6 +267,7 @@ FCL_CCD_INLINE Vectors unit(const Vectors& v) {
 void meetingHalves(const SpanTriangle& a, const BodyTriangles& b, const double* times,
                    const SpanPoses& pose_b, const double (&deviation)[8], double margin,
                    unsigned tested, unsigned (&meeting)[2]) {
+  assert(!(margin < 0) && areNotNegative(deviation, BodyBoxes::kWidth));
   const SpanCorners corners = inWorld(b, times, pose_b);
   const Doubles four_deviations = all(4) * load<kEight>(deviation), zero = all(0);
   ApartHalves apart{{zero > zero, zero > zero}};

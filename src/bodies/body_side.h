@@ -5,6 +5,7 @@
 #define FCL_CCD_BODIES_BODY_SIDE_H
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <memory>
 
@@ -21,6 +22,7 @@ class PoseTable {
  public:
   explicit PoseTable(const MotionPath& path) : path_(path) {}
   const Pose& at(double t) {
+    assert(isTimeOfStep(t));
     return poses_.get(slotOf(t, 0, kBits), t, [&](Pose& pose) { pose = path_.pose(t); });
   }
 
@@ -34,7 +36,9 @@ class PoseTable {
 struct SpanTimes {
   double at[3];
 
-  SpanTimes(double t0, double t1) : at{t0, 0.5 * (t0 + t1), t1} {}
+  SpanTimes(double t0, double t1) : at{t0, 0.5 * (t0 + t1), t1} {
+    assert(isPartOfStep(t0, t1) && t0 <= at[1] && at[1] <= t1);
+  }
 };
 
 /// @brief The data of a body in a traversal.
@@ -67,6 +71,7 @@ struct BodySide {
   /// @param begin, end  the box at t = 0 and t = 1; a rigid body's at t = 0
   double accelerationOf(const BodyBox& begin, const BodyBox& end, double t0, double t1) {
     const AccelerationBound& bound = acceleration(t0, t1);
+    assert(!(begin.displacement < 0));
     if (body.isRigid()) return bound.of(vecOf(begin.center), begin.radius);
     return bound.between(vecOf(begin.center), vecOf(end.center),
                          std::max(begin.radius, end.radius)) +
@@ -78,6 +83,7 @@ struct BodySide {
   /// @param part  the part that was opened; null: another node
   const double (&accelerations(const BodyPart* part, const BodyNode& node, double t0,
                                double t1))[BodyBoxes::kWidth] {
+    assert(0 < node.count && node.count <= BodyBoxes::kWidth);
     const auto set = [&](Accelerations& out) {
       for (int lane = 0; lane < node.count; ++lane)
         out.most[lane] =
@@ -102,6 +108,7 @@ struct BodySide {
 
   /// @brief A triangle in a span. Valid until the next call.
   const SingleTriangle& triangle(std::int32_t place, double t0, double t1) {
+    assert(place >= 0);
     if (!singles_) singles_ = std::make_unique<SingleCache>(-1);
     const std::size_t slot = static_cast<std::size_t>(place) % SingleCache::kSlots;
     const bool is_stored = singles_->find(slot, place);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bodies/body_tolerance.h"
 
+#include <cassert>
+
 #include "numerics/error_bounds.h"
 
 namespace fcl {
@@ -28,6 +30,7 @@ BodyTolerance::BodyTolerance(const MovingBody& a, const MovingBody& b,
     if (body->shape() && body->shape()->flat())
       rate += body->path().rotationError() * speed * kUpward;
   touching = 4 * position;
+  assert(!(distance < 0) && !(position < 0) && !(rate < 0) && !(radii < 0));
 }
 
 }  // namespace deformable

@@ -2,6 +2,7 @@
 #include "bodies/calm_bodies.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "numerics/error_bounds.h"
@@ -52,12 +53,14 @@ CalmBodies::CalmBodies(const MovingBody& a, const MovingBody& b) : body_{a, b} {
     if (body_[k].shape()) are_calmer_ |= dropSpin(k);
   for (auto k : {0, 1})
     if (body_[1 - k].shape()) are_calmer_ |= dropCommonTurn(k);
+  assert(are_calmer_ ? !(deviation_ < 0) : deviation_ == 0);
 }
 
 /// Keeps a path if little may be nearer than it shows. Where the deviation is larger the
 /// pads of boxes grow, and the true path may tell more.
 bool CalmBodies::keep(int k, const MotionPath& path, double deviation) {
   constexpr double kMost = 0x1p-20;
+  assert(!(deviation < 0));
   double size = 0;
   for (const MovingBody& body : body_)
     size +=

@@ -2,6 +2,7 @@
 #include "bodies/common_motion.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "bodies/body_tolerance.h"
@@ -49,6 +50,7 @@ bool moveAsOne(const MovingBody& a, const MovingBody& b, double distance) {
   };
   if (!turn_a || !turn_b || !isRigid(a) || !isRigid(b)) return false;
   const double size = std::max(a.size(), b.size());
+  assert(isUnit(turn_a->axis) && isUnit(turn_b->axis) && !(distance < 0));
   const SpaceMotion x(*turn_a, size), y(*turn_b, size);
   const double angle = std::max(x.angle, y.angle), sine = std::min(1., angle),
                cosine = std::min(2., 0.5 * angle * angle),

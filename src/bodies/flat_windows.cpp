@@ -2,6 +2,7 @@
 #include "bodies/flat_windows.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "paths/posed_vector.h"
@@ -46,10 +47,12 @@ void flatWindows(const FlatShape& flat, const SpanPoses& pose_flat,
                  MeetingWindows& out) {
   const Heights h0(flat, pose_flat.beginning, *boxes[0], pose_boxes.beginning),
       h1(flat, pose_flat.end, *boxes[2], pose_boxes.end);
+  assert(0 < count && count <= kWidth);
   out.mask = 0;
   for (int lane = 0; lane < count; ++lane) {
     const double half0 = h0.half_width[lane] + margin[lane],
                  half1 = h1.half_width[lane] + margin[lane];
+    assert(!(margin[lane] < 0) && !(half0 < 0) && !(half1 < 0));
     double &lo = out.lo[lane], &hi = out.hi[lane];
     lo = 0;
     hi = 1;
@@ -62,6 +65,7 @@ void flatWindows(const FlatShape& flat, const SpanPoses& pose_flat,
     if (!flat.is_solid && !narrowWindow(below[0], below[1], lo, hi)) continue;
     if (lo <= hi) out.mask |= 1U << lane;
   }
+  assert(out.areInSpan(count) && out.areOrdered() && out.haveNoGap());
 }
 
 }  // namespace deformable

@@ -56,6 +56,8 @@ BodyBox boxOfSlabs(const HalfAxis& half, const double (&origin)[3]) {
     box.center[j] = origin[j] + 0.5 * (upper - lower);
     // The center rounds by a unit of itself.
     box.extent[j] = 0.5 * (upper + lower) * kUpward + 4 * kUnit * std::abs(box.center[j]);
+    // Each half-axis is rounded outward.
+    assert(!(lower + upper < 0) && !(box.extent[j] < 0));
     is_bounded &= box.extent[j] < kMostExtent;
     box.axis[j][j] = 1;
   }
@@ -96,6 +98,27 @@ bool contains(const BodyBox& box, const Vec& x) {
   return !(norm(from_center) > box.radius + rounding);
 }
 
+/// Whether a box contains another one, up to what both round by. Their sides are parallel
+/// to the axes. For assertions.
+[[maybe_unused]] bool contains(const BodyBox& outer, const BodyBox& inner) {
+  for (int k = 0; k < 3; ++k) {
+    const double way = std::abs(inner.center[k] - outer.center[k]),
+                 size = std::abs(inner.center[k]) + std::abs(outer.center[k]) +
+                        inner.extent[k] + outer.extent[k];
+    if (way + inner.extent[k] > outer.extent[k] + 0x1p-38 * size) return false;
+  }
+  return !(inner.displacement > outer.displacement);
+}
+
+/// The largest coordinate of a box along a direction, with what it rounds by. For
+/// assertions.
+[[maybe_unused]] double reachOfBox(const BodyBox& box, const Vec& direction) {
+  double reach = dot(direction, vecOf(box.center));
+  for (int i = 0; i < 3; ++i)
+    reach += box.extent[i] * std::abs(dot(direction, vecOf(box.axis[i])));
+  return reach + norm(direction) * (box.pad + 0x1p-44 * (norm(box.center) + box.radius));
+}
+
 bool isBounded(const BodyBoxes& boxes, int lane) {
   return boxes.extent[0][lane] < kMostExtent && boxes.extent[1][lane] < kMostExtent &&
          boxes.extent[2][lane] < kMostExtent;
@@ -106,6 +129,7 @@ bool isBounded(const BodyBoxes& boxes, int lane) {
 void openMoving(const MovingKdopTree& tree, std::int32_t index, BodyNode& out) {
   constexpr int kWidth = BodyBoxes::kWidth;
   const MovingKdopNode& node = tree.node(index);
+  assert(0 < node.count && node.count <= kWidth);
   out.count = node.count;
   for (int lane = 0; lane < kWidth; ++lane) {
     const int from = std::min(lane, node.count - 1);
@@ -135,6 +159,7 @@ double accelerationOf(const AccelerationBound& bound, const BodyTriangle& triang
     most = std::max(most, bound.between(from, to, 0) +
                               bound.per_displacement * std::sqrt(dot(way, way)));
   }
+  assert(!(most < 0));
   return most * kUpward;
 }
 
@@ -148,6 +173,7 @@ FeaturePair featurePair(int pair, const BodyTriangle& a, const BodyTriangle& b) 
 }
 
 FeatureIds idsOf(int pair, const BodyTriangle& a, const BodyTriangle& b) {
+  assert(0 <= pair && pair <= kFreePair);
   const FeaturePair features = featurePair(pair, a, b);
   FeatureIds ids{features.kind, features.first_on_a, {}, {a.index, b.index}};
   const auto num_points = static_cast<int>(numVertices(ids.kind));
@@ -211,6 +237,7 @@ MovingBody::MovingBody(const ConvexShape& shape, const MotionPath& path)
 
 MovingBody::MovingBody(OctreeCells& cells, const MotionPath& path)
     : octree_(&cells), path_(path) {
+  assert(!cells.isEmpty());
   radius_ = radiusOf(cells.box(0));
 }
 
@@ -246,6 +273,7 @@ BodyBox MovingBody::rigidBox(int node) const {
 BodyBox MovingBody::movingBox(std::int32_t box, int frame) const {
   const MovingKdopNode& node = tree_->node(box / MovingKdopNode::kWidth);
   const int lane = box % MovingKdopNode::kWidth;
+  assert(box >= 0 && lane < node.count);
   const auto half = [&](int j) {
     const int row = MovingKdopNode::rowOf(j);
     return frame == 0 ? node.t0[row][lane] : node.t1[row][lane];
@@ -267,7 +295,16 @@ BodyBox MovingBody::movingRoot(int frame) const {
       std::sqrt(3.) *
       double{*std::max_element(node.displacement, node.displacement + node.count)} *
       kUpward;
+  assert(containsTop(out, frame));
   return out;
+}
+
+/// Whether the box of a mesh that deforms contains those of its first node. For
+/// assertions.
+bool MovingBody::containsTop(const BodyBox& root, int frame) const {
+  for (int lane = 0; lane < tree_->node(0).count; ++lane)
+    if (!contains(root, movingBox(lane, frame))) return false;
+  return true;
 }
 
 BodyBox MovingBody::box(const BodyPart& part, int frame) const {
@@ -279,6 +316,7 @@ BodyBox MovingBody::box(const BodyPart& part, int frame) const {
 
 double MovingBody::reach(const BodyPart& part, double t, const Vec& direction,
                          std::int64_t& room) const {
+  assert(isTimeOfStep(t));
   if (isMesh()) return reachOfMesh(part, t, direction, room);
   --room;
   return shape_ ? shape_->reach(direction) : octree_->reach(part.box, direction);
@@ -303,11 +341,15 @@ double MovingBody::reachOfMesh(const BodyPart& part, double t, const Vec& direct
     for (int k = 0; k < 3; ++k)
       most = std::max(most, dot(direction, lerp(of.corner[0][k], of.corner[1][k], t)));
   }
+  // All triangles are in the box of the part.
+  assert(!(most > (1 - t) * reachOfBox(box(part, 0), direction) +
+                      t * reachOfBox(box(part, 1), direction)));
   return most;
 }
 
 void MovingBody::openOctree(std::int32_t node, BodyNode& out) const {
   const OctreeCells::Children children = octree_->open(node);
+  assert(children.count <= BodyBoxes::kWidth);
   out.count = children.count;
   for (int lane = 0; lane < BodyBoxes::kWidth && children.count > 0; ++lane) {
     const std::int32_t child = children.first + std::min(lane, children.count - 1);
@@ -317,6 +359,7 @@ void MovingBody::openOctree(std::int32_t node, BodyNode& out) const {
 }
 
 void MovingBody::open(const BodyPart& part, BodyNode& out) const {
+  assert(!shape_ && !part.isTriangle());
   if (octree_) return openOctree(part.child, out);
   constexpr int kWidth = BodyBoxes::kWidth;
   if (tree_) {
@@ -327,6 +370,7 @@ void MovingBody::open(const BodyPart& part, BodyNode& out) const {
   std::int32_t nodes[kWidth], children[kWidth];
   out.count = openBinary(part.child, nodes, children,
                          [this](std::int32_t i) { return rigid_->link(i); });
+  assert(0 < out.count && out.count <= kWidth);
   for (int lane = 0; lane < out.count; ++lane) rigid_->prefetch(nodes[lane]);
   for (int lane = 0; lane < kWidth; ++lane) {
     const int from = std::min(lane, out.count - 1);
@@ -382,23 +426,27 @@ MeshInstance MovingBody::meshInBodyFrame() const {
 }
 
 std::vector<std::int32_t> MovingBody::placesOfTriangles() const {
+  assert(isMesh());
   if (!tree_) return {};
   const auto& triangles = tree_->triangles();
   std::vector<std::int32_t> places(triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    assert(triangles[i].index < places.size());
+    assert(triangles[i].index < places.size() && places[triangles[i].index] == 0);
     places[triangles[i].index] = static_cast<std::int32_t>(i);
   }
   return places;
 }
 
 BodyTriangle MovingBody::triangle(std::int32_t place) const {
+  assert(isMesh() && place >= 0);
   BodyTriangle out;
   if (tree_) {
+    assert(place < numTriangles());
     const TreeTriangle& from = tree_->triangles()[static_cast<std::size_t>(place)];
     out.index = static_cast<std::int32_t>(from.index);
     out.owned = from.owned;
     for (int k = 0; k < 3; ++k) {
+      assert(from.place[k] < tree_->vertices().size());
       const TreeVertex& vertex = tree_->vertices()[from.place[k]];
       out.vertex[k] = static_cast<std::int32_t>(from.id[k]);
       out.corner[0][k] = {vertex.t0[0], vertex.t0[1], vertex.t0[2]};
@@ -429,6 +477,7 @@ BodyTriangle MovingBody::triangle(std::int32_t place) const {
 
 /// Its vertices are there and finite. An error is for a pair that is advanced.
 bool MovingBody::isReadable(std::int32_t place) const {
+  assert(isMesh() && place >= 0);
   if (tree_) return true;
   for (int k = 0; k < 3; ++k) {
     const std::size_t id = triangles_.id(static_cast<std::size_t>(place), k);
@@ -442,6 +491,7 @@ bool MovingBody::isReadable(std::int32_t place) const {
 }
 
 void MovingBody::setTriangles(const BodyNode& node, BodyTriangles& out) const {
+  assert(isMesh());
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   for (int lane = 0; lane < node.count; ++lane) {
     if (!node.part[lane].isTriangle()) continue;

@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_BODIES_MOVING_BODY_H
 #define FCL_CCD_BODIES_MOVING_BODY_H
 
+#include <cassert>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -124,10 +125,14 @@ class MovingBody {
   /// @brief The number of triangles, free edges and free points.
   /// @pre it is a mesh that deforms
   std::int32_t numTriangles() const {
+    assert(tree_);
     return static_cast<std::int32_t>(tree_->triangles().size());
   }
   /// @pre it is a mesh
-  std::size_t numVertices() const { return frames_.size(); }
+  std::size_t numVertices() const {
+    assert(isMesh());
+    return frames_.size();
+  }
   /// @brief The mesh in the body frame: a deforming one goes straight there.
   /// @pre it is a mesh
   MeshInstance meshInBodyFrame() const;
@@ -164,6 +169,7 @@ class MovingBody {
  private:
   void openOctree(std::int32_t node, BodyNode& out) const;
   bool containTriangles(const BodyNode& node) const;
+  bool containsTop(const BodyBox& root, int frame) const;
   double reachOfMesh(const BodyPart& part, double t, const Vec& direction,
                      std::int64_t& room) const;
   BodyBox rigidBox(int node) const;
@@ -190,7 +196,9 @@ class MovingBodyReader {
   explicit MovingBodyReader(const MovingBody& body) : body_(body) {}
 
   /// @brief The slot of a node.
+  /// @pre it is no triangle
   static std::size_t slotOf(const BodyPart& part) {
+    assert(!part.isTriangle());
     return static_cast<std::uint32_t>(part.child) % kSlots;
   }
 

@@ -17,6 +17,7 @@ namespace deformable {
 namespace {
 
 void interpolate(const BodyBox& end, double t, BodyBox& box) {
+  assert(isTimeOfStep(t));
   for (int k = 0; k < 3; ++k) {
     box.center[k] = (1 - t) * box.center[k] + t * end.center[k];
     box.extent[k] = (1 - t) * box.extent[k] + t * end.extent[k];
@@ -34,6 +35,7 @@ BodyBox boxAt(const MovingBody& body, const BodyPart& part, double t) {
 /// The node's boxes at a time.
 const BodyBoxes* boxesAt(const MovingBody& body, const BodyNode& node, double t,
                          BodyBoxes& scratch) {
+  assert(isTimeOfStep(t));
   if (body.isRigid() || t == 0) return &node.box[0];
   if (t == 1) return &node.box[1];
   scratch = node.box[0];
@@ -75,6 +77,7 @@ PartWindows::PartWindows(const MovingBody& a, const MovingBody& b,
 
 PartWindows::PartSpan PartWindows::partSpan(int k, const BodyPart& part, double t0,
                                             double t1) {
+  assert(isPartOfStep(t0, t1));
   BodySide& side = side_[k];
   const double dt = t1 - t0;
   PartSpan span;
@@ -86,6 +89,7 @@ PartWindows::PartSpan PartWindows::partSpan(int k, const BodyPart& part, double 
   else if (!side.goes_straight)
     span.deviation =
         0.125 * dt * dt * side.accelerationOf(span.frame[0], span.frame[1], t0, t1);
+  assert(!(span.deviation < 0));
   return span;
 }
 
@@ -133,6 +137,8 @@ PartWindows::Margins PartWindows::marginsOf(const PartWork& work, int opened,
     out.along_axis[1][lane] = axis_many + (axes_share_ * of_one + axis_one);
     out.fixed[lane] =
         direction_bound_ * (other.frame[0].pad + box_margin_ + node.box[0].pad[lane]);
+    assert(!(out.fixed[lane] < 0) && !(out.deviation[lane] < 0));
+    assert(!(out.along_axis[0][lane] < 0) && !(out.along_axis[1][lane] < 0));
   }
   return out;
 }
@@ -142,6 +148,7 @@ double PartWindows::shareAlongFlat(const PartWork& work, BodySide& flat,
                                    const BodySide& side) {
   const double turn = flat.body.path().turnSpeed() * (work.t1 - work.t0);
   if (turn > 1) return 1;
+  assert(!(turn < 0));
   const Vec normal = rotated(flat.poses.at(work.t0).rotation, flat.flat->normal);
   return std::min(side.shareAlong(normal) + turn, 1.);
 }
@@ -218,6 +225,7 @@ bool PartWindows::narrowByShape(int opened, const PartWork& work,
   constexpr double kQuarter = 0x1p-4;
   const double margin = margins.with(1, lane),
                slack = margin - margins.with(kQuarter, lane);
+  assert(!(slack < 0) && (windows.mask >> lane & 1U) != 0);
   const SpanTimes times(work.t0, work.t1);
   const SpanPoses poses[2] = {side_[1 - opened].spanPoses(times),
                               side_[opened].spanPoses(times)};
@@ -269,12 +277,15 @@ MeetingWindows PartWindows::windowsOfBoxes(const PartWork& work, int opened,
     if (!narrowByShape(opened, work, boxes, lane, margins, windows))
       windows.mask &= ~(1U << lane);
   }
+  assert(windows.areInSpan(node.count) && (!measures_gaps_ || windows.haveNoGap()));
   return windows;
 }
 
 MeetingWindows PartWindows::windows(const PartWork& work, int opened,
                                     const BodyNode& node, const BodyPart* part,
                                     const PartSpan& other) {
+  assert(opened == 0 || opened == 1);
+  assert(isPartOfStep(work.t0, work.t1) && isPartOfStep(work.t0, work.start));
   const auto& acceleration = side_[opened].accelerations(part, node, work.t0, work.t1);
   TriangleHalves halves;
   if (part) halves = testTriangles(work, opened, node, *part, acceleration);

@@ -5,6 +5,7 @@
 #define FCL_CCD_BODIES_PART_WINDOWS_H
 
 #include <algorithm>
+#include <cassert>
 
 #include "bodies/body_side.h"
 #include "bodies/body_tolerance.h"
@@ -25,6 +26,7 @@ class PartWindows {
 
   /// @brief Takes another distance at which the bodies are in contact.
   void setDistance(double distance) {
+    assert(!(distance < 0));
     distance_ = distance;
     box_margin_ = distance + rounding_;
   }
@@ -32,6 +34,7 @@ class PartWindows {
   bool measuresGaps() const { return measures_gaps_; }
   /// @brief The distance of two parts is at least this during the span of windows.
   double leastDistance(const MeetingWindows& windows, int lane) const {
+    assert(measures_gaps_ && (windows.mask >> lane & 1U) != 0);
     return std::max(distance_ + windows.gap[lane] / direction_bound_, 0.);
   }
 

@@ -2,6 +2,7 @@
 #include "bodies/part_work.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace fcl {
@@ -25,6 +26,7 @@ bool isLater(const PartWork& x, const PartWork& y) {
 }  // namespace
 
 void PartWorkQueue::push(const PartWork& work) {
+  assert(!(work.start < work.t0) && work.steps >= 0 && work.dive >= 0);
   if (order_ == Order::kAny || (work.dive == 0 && work.start < horizon_))
     return ready_.push_back(work);
   heap_.push_back(work);
@@ -36,6 +38,7 @@ void PartWorkQueue::push(const PartWork& work) {
 // its number and a few more, so that it reaches the triangles.
 PartWork PartWorkQueue::pop() {
   constexpr int kDepth = 8;
+  assert(!isEmpty());
   if (++num_popped_ == end_of_dive_) endDive();
   const bool dives = !heap_.empty() && heap_.front().dive > 0;
   PartWork work;
@@ -68,6 +71,7 @@ PartWork PartWorkQueue::popHeap() {
   if (ready_.empty())
     horizon_ =
         heap_.size() > kMany ? (std::floor(work.start / kPeriod) + 1) * kPeriod : 0;
+  assert(heap_.empty() || !isLater(work, heap_.front()));
   return work;
 }
 

@@ -4,6 +4,7 @@
 #ifndef FCL_CCD_BODIES_PART_WORK_H
 #define FCL_CCD_BODIES_PART_WORK_H
 
+#include <cassert>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -59,7 +60,10 @@ class PartWorkQueue {
 
   /// @brief Moves all work out, in the order in which it came.
   /// @pre the order is kAny
-  std::vector<PartWork> takeAll() { return std::exchange(ready_, {}); }
+  std::vector<PartWork> takeAll() {
+    assert(order_ == Order::kAny && heap_.empty());
+    return std::exchange(ready_, {});
+  }
 
   /// @brief The work that comes next. Its parts belong to its dive.
   PartWork pop();

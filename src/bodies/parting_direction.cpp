@@ -25,11 +25,13 @@ PartingDirection::PartingDirection(const MovingBody& a, const MovingBody& b,
     margin_ *= body_[k]->path().stretch();
   }
   margin_ += tolerance.position;
+  assert(!(margin_ < 0));
 }
 
 void PartingDirection::set(const Vec& direction) {
   constexpr int kRoom = 64;
   if (!(maxNorm(direction) > 0)) return;
+  assert(isUnit(direction));
   direction_ = direction;
   room_ += kRoom;
   forgetReaches();
@@ -91,6 +93,7 @@ double PartingDirection::gapAt(double t, const BodyPart& a, const BodyPart& b,
 bool PartingDirection::areApart(const BodyPart& a, const BodyPart& b,
                                 const double (&t)[2], double (&gap)[2]) {
   constexpr int kRoom = 4;
+  assert(isTimeOfStep(t[0]) && isTimeOfStep(t[1]));
   room_ += kRoom;
   if (!(maxNorm(direction_) > 0) || room_ < 0) return false;
   const std::int64_t room = room_;
@@ -105,6 +108,8 @@ bool PartingDirection::areApart(const BodyPart& a, const BodyPart& b,
   poses = posesAt(t[0]);
   gap[0] = gapAt(t[0], a, b, poses, directionAt(poses, is_below));
   if (!(gap[0] > 0) || room_ < 0) return false;
+  // The parts took room.
+  assert(room_ <= room);
   room_ += 2 * (room - room_);
   return true;
 }
