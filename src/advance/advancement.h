@@ -47,6 +47,7 @@ template <typename Look, typename IsContact, typename Step>
 AdvanceAnswer advance(double& t, double t1, double t_stop, int& steps,
                       AdvanceCounts& counts, Look&& look, IsContact&& isContact,
                       Step&& step) {
+  assert(0 <= t && t <= 1 && t1 <= 1);
   while (true) {
     const auto moment = look(t);
     ++counts.steps;
@@ -73,6 +74,7 @@ template <typename IsProved>
 double provedTimeAfter(double t, double width, double position_error, double speed,
                        IsProved&& isProved) {
   constexpr double kFactor = 4;
+  assert(0 <= t && t <= 1 && !(position_error < 0) && !(speed < 0));
   const double longest = std::min(width, 1 - t);
   // The loop ends: doubles have fewer than 1100 powers of two.
   for (double h = std::max(position_error / std::max(speed, 0x1p-500), 0x1p-52);;

@@ -35,6 +35,7 @@ struct Extreme {
 };
 
 Extreme extremeOf(const PosedConvex& set, const Vec& direction, double tolerance) {
+  assert(!(tolerance < 0));
   int id;
   Extreme out{set.support(direction, id), {0, 0, 0}, 0};
   if (set.shape) {
@@ -54,6 +55,8 @@ Extreme extremeOf(const PosedConvex& set, const Vec& direction, double tolerance
     out.corners |= 1U << k;
     ++count;
   }
+  // The farthest corner is one of them, or an equal one before it.
+  assert(count > 0);
   out.middle = (1. / count) * out.middle;
   return out;
 }
@@ -70,6 +73,7 @@ MovingConvex movingConvexOf(const MovingBody& body, std::int32_t place) {
   const Vec center = out.shape->center();
   const double far = std::sqrt(dot(center, center)) + out.shape->box().radius;
   out.speed = std::min(out.speed, body.path().speed(far * kUpward));
+  assert(!(out.speed < 0));
   return out;
 }
 
@@ -79,7 +83,11 @@ ConvexAdvance::ConvexAdvance(const MovingConvex& a, const MovingConvex& b, doubl
       flat_(flatOf(a, b)),
       t1_(t1),
       tolerance_(tolerance),
-      acceleration_(accelerationOf(a, t0, t1) + accelerationOf(b, t0, t1)) {}
+      acceleration_(accelerationOf(a, t0, t1) + accelerationOf(b, t0, t1)) {
+  assert(a.shape || b.shape);
+  assert(!(a.shape && a.shape->flat()) || !(b.shape && b.shape->flat()));
+  assert(isPartOfStep(t0, t1) && !(acceleration_ < 0) && !(tolerance.distance < 0));
+}
 
 void ConvexAdvance::ignoreInitiallyCloser() {
   const State state = stateAt(0);
@@ -88,10 +96,12 @@ void ConvexAdvance::ignoreInitiallyCloser() {
   const double own =
       (gap.gap / growthOfNormal(state) - tolerance_.radii) * (1 - kNearerShare) -
       2 * tolerance_.touching;
+  assert(!(tolerance_.radii + own > tolerance_.distance));
   if (own > 0) tolerance_.distance = tolerance_.radii + own;
 }
 
 ConvexAdvance::Side ConvexAdvance::sideAt(int k, double t) const {
+  assert(isTimeOfStep(t));
   const MovingConvex& set = *set_[k];
   Side side{};
   side.now.shape = set.shape;
@@ -109,6 +119,7 @@ ConvexAdvance::Side ConvexAdvance::sideAt(int k, double t) const {
 }
 
 double ConvexAdvance::Side::reachAfter(double h, const Vec& n, const Vec& change) const {
+  assert(!(h < 0));
   if (!now.shape) {
     double most = -HUGE_VAL;
     for (int i = 0; i < 3; ++i)
@@ -158,8 +169,10 @@ ConvexAdvance::Separator ConvexAdvance::inWorld(const Vec& direction) const {
 double ConvexAdvance::growthOfNormal(const State& state) const {
   if (flat_ < 0 || set_[flat_]->path->isTranslation()) return 1;
   const PosedConvex& flat = state.side[flat_].now;
-  return set_[flat_]->path->stretch() /
-         norm(rotated(flat.pose.rotation, flat.shape->flat()->normal));
+  const MotionPath& path = *set_[flat_]->path;
+  const double length = norm(rotated(flat.pose.rotation, flat.shape->flat()->normal));
+  assert(!(length > path.stretch() * kUpward + path.rotationError()));
+  return path.stretch() / length;
 }
 
 // The direction is n(t) = R(t) m with m = R(t0)^T n. For two points with the difference z
@@ -174,6 +187,7 @@ double ConvexAdvance::growthOfNormal(const State& state) const {
 // The height n . z is at most |n| times the distance.
 ConvexAdvance::Separator ConvexAdvance::inBody(int k, double t, const State& state,
                                                const ConvexGap& gap) const {
+  assert(flat_ < 0 || k == flat_);
   const MotionPath& path = *set_[k]->path;
   const double(&r)[9] = state.side[k].now.pose.rotation;
   const double(&v)[9] = state.side[k].rate.rotation;
@@ -213,6 +227,7 @@ double ConvexAdvance::gapAfter(double h, const State& state,
 /// time, since the gap is concave.
 double ConvexAdvance::step(double t, const State& state, const Separator& along) const {
   const double longest = std::min(t1_ - t, along.longest);
+  assert(!(longest < 0) && !(along.margin < 0) && !(along.acceleration < 0));
   double lower = 0, gap = gapAfter(0, state, along);
   if (!(gap > 0)) return -1;
   double upper = longest, beyond = gapAfter(longest, state, along);
@@ -247,6 +262,7 @@ double ConvexAdvance::step(double t, const State& state, const Separator& along)
     assert(lower <= upper * kUpward && gap >= 0 && !(beyond >= 0));
     if (upper - lower < 0.1 * lower) break;
   }
+  assert(0 <= lower && !(lower > longest * kUpward));
   return lower;
 }
 
@@ -284,12 +300,15 @@ ConvexGap ConvexAdvance::flatGap(const State& state) const {
   Vec point = near.middle;
   unsigned corners = near.corners;
   if (!shape.is_solid && out.gap < 0) {
+    // Points on both sides of the plane.
+    assert(lowest < 0 && highest > 0);
     point = low.point + (-lowest / (highest - lowest)) * (high.point - low.point);
     corners = low.corners | high.corners;
   }
   out.point[1 - flat_] = point;
   out.point[flat_] = point - (is_below ? -out.distance : out.distance) * up;
   out.corners[1 - flat_] = corners;
+  assert(isUnit(out.direction));
   return out;
 }
 
@@ -316,6 +335,7 @@ ConvexGap ConvexAdvance::gapOf(const State& state, double contact) const {
 /// it was before.
 ConvexGap ConvexAdvance::nearestAt(double t, double error) const {
   constexpr int kMostSearches = 16;
+  assert(!(error < 0));
   constexpr double kShare = 0.9;
   const State state = stateAt(t);
   ConvexGap gap = gapOf(state, 0);
@@ -346,6 +366,7 @@ ConvexGap ConvexAdvance::gapAt(double t) const {
     gap.direction = n;
     gap.gap = along;
   }
+  assert(isUnit(gap.direction) || maxNorm(gap.direction) == 0);
   return gap;
 }
 

@@ -2,6 +2,7 @@
 #include "advance/feature_advance.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -23,6 +24,7 @@ constexpr int kPlainSteps = 64;
 
 /// An edge with its ends in the order of their ids.
 BodyTriangle edgeOf(const BodyTriangle& triangle, unsigned first) {
+  assert(first < 3);
   unsigned second = (first + 1) % 3;
   if (static_cast<std::uint32_t>(triangle.vertex[second]) <
       static_cast<std::uint32_t>(triangle.vertex[first]))
@@ -46,6 +48,7 @@ struct PointPlace {
 };
 
 PointPlace placeOf(ContinuousContactKind kind, bool first_on_a, int point) {
+  assert(0 <= point && point < 4);
   if (kind == ContinuousContactKind::kEdgeEdge) return {point / 2, point % 2};
   const bool on_a = (point == 0) == first_on_a;
   return {on_a ? 0 : 1, std::max(point - 1, 0)};
@@ -54,6 +57,7 @@ PointPlace placeOf(ContinuousContactKind kind, bool first_on_a, int point) {
 }  // namespace
 
 BodyTriangle featureOf(const BodyTriangle& triangle, unsigned first, unsigned second) {
+  assert(first < 3 && second < 3);
   BodyTriangle out = triangle;
   const unsigned corner[3] = {first, second, second};
   for (int k = 0; k < 3; ++k) {
@@ -106,7 +110,9 @@ FeatureAdvance::FeatureAdvance(const MotionPath& path_a, const BodyTriangle& a,
       a_(sideOf(pair_, a, true)),
       b_(sideOf(pair_, b, false)),
       motion_(path_a, a_, path_b, b_, t0, t1, tolerance_),
-      t1_(t1) {}
+      t1_(t1) {
+  assert(tolerance_.distance > 0);
+}
 
 // The position of the tolerance bounds what posed points are off along a unit direction.
 // While a direction turns it is at most 1.5 long. The rest is that of straight paths: see
@@ -131,6 +137,7 @@ void FeatureAdvance::ignoreInitiallyCloser() {
   if (near.distance > tolerance_.distance * (1 + DistanceTolerance::kShare) + most)
     return;
   const double own = near.distance * (1 - 2 * DistanceTolerance::kShare) - 2 * most;
+  assert(!(own > tolerance_.distance));
   if (own > 0) tolerance_.distance = own;
 }
 
@@ -193,6 +200,8 @@ double FeatureAdvance::turningStep(const Moment& moment, const Vec& n, const Vec
     if (!(gap > 0)) return -1;
     h = std::min(h, firstRoot(gap, rate, bend));
   }
+  // A longer direction would prove too much.
+  assert(isUnit(n) && !(h < 0 || h > longest) && !(h * h * square > 0.251));
   return h;
 }
 
@@ -205,6 +214,7 @@ DistanceContact FeatureAdvance::contactAt(double t, double width) const {
   out.toc_lo = out.toc_hi = t;
   // A contact at the beginning has exactly the time 0.
   if (t > 0) out.toc_hi = proveWithin(t, width);
+  assert(0 <= out.toc_lo && out.toc_lo <= out.toc_hi && out.toc_hi <= 1);
   return out;
 }
 

@@ -2,6 +2,7 @@
 #include "advance/triangle_advance.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "advance/advancement.h"
@@ -38,6 +39,7 @@ void nearestOnEdges(const Vec& p, const Vec& u, const Vec& r, const Vec& v, doub
     t = clampedUnit(t);
     s = uu > 0 ? clampedUnit((uv * t - uw) / uu) : 0;
   }
+  assert(!(s < 0 || s > 1) && !(t < 0 || t > 1));
 }
 
 /// A vertex against the inside of a face.
@@ -90,6 +92,7 @@ void tryDirection(const Vec& d, const Vec (&a)[3], const Vec (&b)[3], Vec& best,
     if (!(length > kLeast)) return;
   }
   const Vec n = (1 / length) * long_enough, opposite = -1. * n;
+  assert(isUnit(n) || !(length < HUGE_VAL));
   const double along = gapAlong(n, a, b), against = gapAlong(opposite, a, b);
   if (along > gap) {
     gap = along;
@@ -181,9 +184,11 @@ TriangleAdvance::TriangleAdvance(const MotionPath& path_a, const BodyTriangle& a
     acceleration_ += most;
     if (jerk_ < HUGE_VAL) jerk_ += most * bound.jerk * kUpward;
   }
+  assert(!(acceleration_ < 0) && !(jerk_ < 0) && !(tolerance.distance < 0));
 }
 
 void TriangleAdvance::cornersAt(double t, Vec (&p)[2][3]) const {
+  assert(isTimeOfStep(t));
   for (int body = 0; body < 2; ++body) {
     const Pose pose = path_[body]->pose(t);
     const int count = count_.of(body);
@@ -195,6 +200,7 @@ void TriangleAdvance::cornersAt(double t, Vec (&p)[2][3]) const {
 }
 
 TriangleAdvance::State TriangleAdvance::at(double t) const {
+  assert(isTimeOfStep(t));
   State state;
   for (int body = 0; body < 2; ++body) {
     const Pose pose = path_[body]->pose(t);
@@ -231,6 +237,7 @@ struct TriangleAdvance::Projection {
   /// the end of a step, it is positive before.
   double stepLength(double margin, double rate_margin, double most_approach,
                     double longest) const {
+    assert(!(margin < 0) && !(rate_margin < 0) && !(most_approach < 0));
     double h = longest;
     for (int i = 0; i < count.a; ++i)
       for (int j = 0; j < count.b; ++j) {
@@ -242,6 +249,7 @@ struct TriangleAdvance::Projection {
         const double root = std::sqrt(rate * rate + 2 * most_approach * gap);
         h = rate < 0 ? 2 * gap / (root - rate) : (root + rate) / most_approach;
       }
+    assert(longest < 0 || !(h < 0 || h > longest * kUpward));
     return h;
   }
 
@@ -276,6 +284,8 @@ double TriangleAdvance::step(double t, const State& state, const Vec& direction)
   if (best < 0 || best >= longest || !(jerk_ < HUGE_VAL)) return best;
   // Its rounding is far less than this part of the bound.
   const double approach = greatestApproach(t, direction) + 0x1p-40 * acceleration_;
+  // It is one of the accelerations that the bound is for.
+  assert(!(approach > (acceleration_ * kUpward + tolerance_.position) * kUpward));
   const auto within = [&](double horizon) {
     const double most = std::min(std::max(approach + jerk_ * horizon, 0.), acceleration_);
     return along.stepLength(margin, tolerance_.rate, most, horizon);
@@ -336,6 +346,7 @@ Vec TriangleAdvance::directionAt(double t) const {
   gap += tolerance_.position;
   tryDirection(directionOf(near, a, b), a, b, direction, gap);
   tryDirection(near.between, a, b, direction, gap);
+  assert(isUnit(direction) || maxNorm(direction) == 0);
   return direction;
 }
 
@@ -386,6 +397,7 @@ bool TriangleAdvance::provesCrossing(const Vec (&p)[2][3]) const {
     }
   // A volume u . (v x w) of vectors below 2 size. Each vector has an error of at most 2
   // e, in all 3 * 2 e (2 size)^2. The rounding is below that, since e is above 16 u size.
+  assert(!(tolerance_.position < 16 * kUnit * size));
   const double bound = 48 * tolerance_.position * size * size;
   const auto volume = [](const double(&p)[3], const double(&a)[3], const double(&b)[3],
                          const double(&c)[3]) {

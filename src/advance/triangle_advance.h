@@ -6,6 +6,7 @@
 #define FCL_CCD_ADVANCE_TRIANGLE_ADVANCE_H
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 
 #include "advance/advancement.h"
@@ -53,7 +54,10 @@ struct NumCorners {
   NumCorners(const BodyTriangle& of_a, const BodyTriangle& of_b)
       : a(cornersOf(of_a)), b(cornersOf(of_b)) {}
 
-  int of(int body) const { return body == 0 ? a : b; }
+  int of(int body) const {
+    assert(body == 0 || body == 1);
+    return body == 0 ? a : b;
+  }
   static int edgesOf(int corners) { return corners == 3 ? 3 : 1; }
 
   int a{3}, b{3};

@@ -22,6 +22,8 @@
 // e + e + e / 2 < 4 e, the least value of `touching`.
 #include "advance/turning_pairs.h"
 
+#include <cassert>
+
 #if defined(FCL_CCD_USE_HIGHWAY)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "advance/turning_kernels.cpp"
@@ -58,6 +60,7 @@ FCL_CCD_INLINE Doubles series(const Doubles& q, const double (&terms)[8]) {
 
 /// sineCosine() of angles in [0, 3.2].
 FCL_CCD_INLINE SinesCosines sinesCosines(const Doubles& x) {
+  assert(isAll((x >= all(0)) & (x <= all(3.2))));
   // A sum with it is rounded to an integer.
   constexpr double kInteger = 0x1.8p52;
   const Doubles zero = all(0),
@@ -253,6 +256,8 @@ class TurningAdvance {
         t_(load<kEight>(pairs.first)),
         acceleration_(accelerations(pairs, 0, body[0], FeatureSizes(pairs.kind).of[0]) +
                       accelerations(pairs, 1, body[1], FeatureSizes(pairs.kind).of[1])) {
+    assert(isAll((t_ >= all(0)) & (t_ <= all(1))));
+    assert(request.touching >= 4 * request.position_error && request.rate_error >= 0);
     advance();
   }
 
@@ -397,6 +402,7 @@ TurningAnswers turningAnswers(const TurningPairs& pairs, const TurningBody (&bod
   out.yes = bits(advance.contacts()) & ~out.open;
   store(advance.time(), out.toc_lo);
   store(upperEnds(pairs, body, request, advance.time(), advance.contacts()), out.toc_hi);
+  assert((out.open & out.yes) == 0 && out.areBrackets(pairs));
   return out;
 }
 

@@ -5,6 +5,7 @@
 #define FCL_CCD_ADVANCE_TURNING_PAIRS_H
 
 #include <algorithm>
+#include <cassert>
 #include <vector>
 
 #include "advance/triangle_advance.h"
@@ -42,6 +43,7 @@ struct alignas(64) TurningPairs {
   /// @param first_corner  the corner of the triangle that comes first
   void setTriangle(int lane, int body, bool deforms, const BodyTriangle& triangle,
                    unsigned first_corner) {
+    assert(0 <= lane && lane < kWidth && (body == 0 || body == 1) && first_corner < 3);
     for (int frame = 0; frame < (deforms ? 2 : 1); ++frame)
       for (unsigned i = 0; i < 3; ++i) {
         const Vec& x = triangle.corner[frame][(first_corner + i) % 3];
@@ -52,6 +54,7 @@ struct alignas(64) TurningPairs {
   }
   /// @brief Repeats a pair in all later lanes.
   void fillUp(int lane) {
+    assert(0 <= lane && lane < kWidth);
     for (auto& of_body : corner)
       for (auto& of_frame : of_body)
         for (auto& point : of_frame)
@@ -76,6 +79,18 @@ struct TurningAnswers {
   /// larger, the triangles provably cross at toc_hi.
   double toc_lo[TurningPairs::kWidth];
   double toc_hi[TurningPairs::kWidth];
+
+  /// @brief Whether the bracket of each contact is ordered, and begins while the features
+  /// were looked at. For assertions.
+  bool areBrackets(const TurningPairs& pairs) const {
+    for (int lane = 0; lane < TurningPairs::kWidth; ++lane) {
+      if ((yes >> lane & 1U) == 0) continue;
+      const double lo = toc_lo[lane], hi = toc_hi[lane], first = pairs.first[lane];
+      if (!(first <= lo && lo <= std::max(first, pairs.last[lane]))) return false;
+      if (!(lo <= hi && hi <= 1)) return false;
+    }
+    return true;
+  }
 };
 
 /// @brief Advances the pairs, as TriangleAdvance::advance() and proveContact() do one.
@@ -101,6 +116,8 @@ class TurningBatch {
   /// @pre both bodies are meshes and turn; no distance is requested
   TurningBatch(const MovingBody& a, const MovingBody& b, const QueryOptions& options)
       : body_{bodyOf(a), bodyOf(b)} {
+    assert(a.isMesh() && b.isMesh() && body_[0].turn && body_[1].turn);
+    assert(!(options.min_distance > 0));
     const BodyTolerance tolerance(a, b, 0);
     request_ = {tolerance.position, tolerance.rate, tolerance.touching, options.toc_err,
                 options.t_max};
@@ -122,6 +139,8 @@ class TurningBatch {
     const bool is_edges = pair.features.kind == ContinuousContactKind::kEdgeEdge;
     const int side = pair.features.first_on_a ? 0 : 1;
     Group& group = groups_[is_edges ? 2 : side];
+    assert(group.count < TurningPairs::kWidth);
+    assert(0 <= pair.first && pair.first <= 1 && 0 <= pair.last && pair.last <= 1);
     const int lane = group.count++;
     group.side = side;
     group.name[lane] = &pair.name;
@@ -159,6 +178,7 @@ class TurningBatch {
 
   template <typename Take>
   void advance(Group& group, Take&& take) {
+    assert(group.count > 0);
     group.pairs.fillUp(group.count - 1);
     const TurningBody body[2] = {body_[group.side], body_[1 - group.side]};
     const TurningAnswers found = advanceTurning(group.pairs, body, request_);
