@@ -84,7 +84,13 @@ class BlockTraversal {
         pose_displacement_(meshes.poseDisplacement()),
         schedule_(schedule),
         taker_(taker),
-        block_(schedule.block + Traversal<kSelf, TreeA, TreeB>::maxPairs()) {}
+        block_(schedule.block + Traversal<kSelf, TreeA, TreeB>::maxPairs()) {
+    assert(schedule.tasks > 0 && 0 < schedule.first_block);
+    assert(schedule.first_block <= schedule.block);
+    // Taker::collect() takes no more at a time.
+    assert(schedule.block <= FeatureBatch::kMaxPairs);
+    assert(pose_displacement_ >= 0);
+  }
 
   /// @brief Seconds that the taker has taken.
   double testTime() const { return test_time_; }
@@ -93,6 +99,7 @@ class BlockTraversal {
   /// for each task.
   /// @param[out] pieces  the pieces of work that are left, one for each task
   void divide(std::vector<NodePair>& pieces) {
+    assert(pieces.empty());
     std::size_t next = 0;
     beginPart();
     traversal_.start(open_);
@@ -110,6 +117,7 @@ class BlockTraversal {
 
   /// @brief Does a piece of work to its end, or until it has taken this number of steps.
   void run(const NodePair& work, std::size_t steps = static_cast<std::size_t>(-1)) {
+    assert(work.earliest >= 0);
     beginPart();
     open_.add(work.parent, work.lane, work.node, work.swapped, work.earliest);
     while (open_.size() > 0 && !taker_.isDone() && steps-- > 0) {
@@ -128,6 +136,7 @@ class BlockTraversal {
  private:
   /// What is tested from here on depends on nothing that came before.
   void beginPart() {
+    assert(count_ == 0);
     open_.cut(0);
     traversal_.beginTask();
     taker_.beginPart();
@@ -139,12 +148,15 @@ class BlockTraversal {
 
   // Not inlined: it is rare, and would keep what is not rare from being inlined.
   FCL_CCD_NOINLINE void changeLatest(double latest) {
+    assert(0 <= latest && latest <= 1);
     traversal_.leaveOutAfter(latest, pose_displacement_);
     const double cull_distance = shifts_.cullDistance(latest);
     if (cull_distance != cull_distance_)
       traversal_.setShift(shifts_.shift(cull_distance));
     cull_distance_ = cull_distance;
     last_beginning_ = lastBeginning(latest);
+    // What begins at the latest time itself is not left out.
+    assert(latest <= last_beginning_);
     latest_ = latest;
   }
 
@@ -155,6 +167,8 @@ class BlockTraversal {
       pair.a = a;
       pair.b = b;
       pair.earliest = earliest;
+      assert(a >= 0 && b >= 0 && (!kSelf || a != b));
+      assert(earliest >= 0);
     });
     if (count_ >= blockFor(latest_)) passOnBlocks(false);
   }

@@ -3,6 +3,7 @@
 #define FCL_CCD_QUERY_COARSE_TIME_H
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace fcl {
@@ -21,17 +22,22 @@ class CoarseTime {
 
   /// @param toc_err  the width of a bracket, at most; at least kLeastTocErr
   explicit CoarseTime(double toc_err) : toc_err_(toc_err) {
+    assert(toc_err >= kLeastTocErr);
     while (std::ldexp(1, -bits_) > 0.125 * toc_err) ++bits_;
   }
 
   /// The beginning of the bracket of a time t >= kLeastTime. It is earlier by at most a
   /// quarter of toc_err and by at most 2^-12 of t. It grows with t.
   double beginning(double t) const {
+    assert(kLeastTime <= t && t <= 1);
     int exponent;
     const double digits = std::frexp(t * kScale, &exponent);
     const double down = std::ldexp(std::floor(std::ldexp(digits, bits_)), -bits_);
     // Three roundings of 2^-53.
-    return std::ldexp(down, exponent) / kScale * (1 - 0x1p-51);
+    const double out = std::ldexp(down, exponent) / kScale * (1 - 0x1p-51);
+    assert(0 < out && out <= t);
+    assert(t - out <= 0.25 * toc_err_ && t - out <= 0x1p-12 * t);
+    return out;
   }
 
   /// The width that the bracket of a contact at t or later may have before it becomes

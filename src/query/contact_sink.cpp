@@ -29,6 +29,7 @@ bool isPreferred(const FeatureContact& x, const FeatureContact& y) {
 /// have them, and the first triangles are named: a pair of triangles that turn may find
 /// them a little later than another one, and may be left out then.
 FeatureContact better(const FeatureContact& x, const FeatureContact& y) {
+  assert(FeatureKey(x) == FeatureKey(y));
   FeatureContact out = isPreferred(y, x) ? y : x;
   if (isPart(out.kind) || !std::equal(x.vertices, x.vertices + 4, y.vertices)) return out;
   const auto triangles = [](const FeatureContact& c) {
@@ -74,12 +75,15 @@ void ContactSink::cut() {
   if (cut_) return;
   cut_ = true;
   for (FeatureContact& contact : contacts_) order_.insert(&contact);
+  assert(order_.size() == contacts_.size());
 }
 
 void ContactSink::replace(FeatureContact& kept, const FeatureContact& contact) {
   if (cut_) order_.erase(&kept);
   kept = contact;
   if (cut_) order_.insert(&kept);
+  // No two contacts are equal in the order, so that none is lost.
+  assert(!cut_ || order_.size() == contacts_.size());
 }
 
 /// Takes another contact of the same features, if it is the one to keep.
@@ -103,6 +107,7 @@ bool ContactSink::add(const FeatureContact& contact) {
   if (may_repeat)
     if (FeatureContact* kept = seen_.find(contact)) return improve(*kept, contact);
   cut();
+  assert(contacts_.size() == capacity_);
   FeatureContact& latest = **order_.rbegin();
   if (!isEarlier(contact, latest)) return false;
   if (mayRepeat(latest)) seen_.remove(latest);
@@ -120,6 +125,7 @@ bool ContactSink::mayKeep(const FeatureIds& pair, double earliest) const {
 std::uint32_t ContactSink::lastVertexAtStart() const {
   constexpr std::uint32_t kNoBound = ~std::uint32_t{0};
   if (latestKept() > 0) return kNoBound;
+  assert(cut_);
   const FeatureContact& latest = **order_.rbegin();
   const bool is_bound =
       latest.kind == ContinuousContactKind::kVertexFace && latest.first_on_a;
@@ -184,6 +190,7 @@ class Buckets {
     return group;
   }
   static std::size_t partOf(double share, std::size_t count) {
+    assert(0 <= share && share <= 1 && count > 0);
     return std::min(static_cast<std::size_t>(share * static_cast<double>(count)),
                     count - 1);
   }
@@ -207,6 +214,7 @@ SortedContacts::SortedContacts(std::vector<std::deque<FeatureContact>> lists)
   for (const auto& list : lists_)
     for (const FeatureContact& c : list) {
       *bucket = static_cast<std::uint32_t>(bucketOf(c));
+      assert(*bucket < count);
       ++ends[*bucket++ + 1];
     }
   for (std::size_t i = 1; i <= count; ++i) ends[i] += ends[i - 1];
@@ -224,6 +232,7 @@ SortedContacts::SortedContacts(std::vector<std::deque<FeatureContact>> lists)
       std::sort(at(first), at(ends[i]), [](const Entry& x, const Entry& y) {
         return x.key != y.key ? x.key < y.key : isEarlier(*x.contact, *y.contact);
       });
+  assert(std::is_sorted(begin(), end(), isEarlier));
 }
 
 }  // namespace deformable

@@ -72,7 +72,10 @@ class ContactSink {
 
   /// @brief A contact that begins after this time changes nothing: the sink would drop
   /// it, and it has dropped others before.
-  double latestKept() const { return cut_ ? (*order_.rbegin())->toc_lo : 1; }
+  double latestKept() const {
+    assert(!cut_ || !order_.empty());
+    return cut_ ? (*order_.rbegin())->toc_lo : 1;
+  }
 
   /// @brief Whether a contact of the pair, or of parts of it, could be kept if its
   /// bracket begins at this time or later, or could name other triangles of one that is.
@@ -170,8 +173,8 @@ class SortedContacts {
     assert(i < size());
     return *sorted_[i].contact;
   }
-  const FeatureContact& front() const { return *sorted_.front().contact; }
-  const FeatureContact& back() const { return *sorted_.back().contact; }
+  const FeatureContact& front() const { return (*this)[0]; }
+  const FeatureContact& back() const { return (*this)[size() - 1]; }
   Iterator begin() const { return Iterator(sorted_.data()); }
   Iterator end() const { return Iterator(sorted_.data() + sorted_.size()); }
 

@@ -53,6 +53,8 @@ class ContactTable {
         return slots_[i].contact;
     slots_[i] = {hash, &contact};
     ++size_;
+    // A search ends at a free slot.
+    assert(2 * size_ <= slots_.size());
     return nullptr;
   }
 
@@ -76,6 +78,7 @@ class ContactTable {
     }
     slots_[i] = {};
     --size_;
+    assert(!find(contact));
   }
 
   void clear() {
@@ -102,6 +105,7 @@ class ContactTable {
   void grow(std::size_t count) {
     std::size_t size = 64;
     while (size < count) size *= 2;
+    assert(size >= count && (size & (size - 1)) == 0);
     std::vector<Slot> before(size);
     before.swap(slots_);
     for (const Slot& slot : before)

@@ -2,6 +2,7 @@
 #include "query/crossing_stage.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 
@@ -59,6 +60,7 @@ void findCrossings(const FeatureBatch& batch, TaskFindings& findings) {
     for (unsigned left =
              kernels().mayCross(batch.pairs(), batch.crossings() + first, count);
          left != 0 && findings.wantsCrossings(); left &= left - 1) {
+      assert(left >> count == 0);
       const std::size_t i = first + static_cast<std::size_t>(lowestBit(left));
       if (!isCrossingAt(batch, i)) continue;
       Crossing crossing = crossingAt(batch, i);

@@ -2,6 +2,7 @@
 #include "query/deformable_query.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <vector>
 
@@ -65,6 +66,7 @@ class ContactQuery {
       if (!parallel) runTasks(traversal, narrow_phase);
     });
     tasks_[0].times = times;
+    assert(tasks_.size() == 1 + pieces_.size());
     if (parallel) runTasksSideBySide();
     QueryAnswer answer = merge(tasks_, options_, progress_, meshes_.a, meshes_.b,
                                [this] { return firstContact(); });
@@ -124,9 +126,10 @@ class ContactQuery {
     QueryOptions first = options_;
     first.query = ContinuousQuery::kFirst;
     first.max_contacts = 1;
-    return ContactQuery(meshes_.a, meshes_.b, meshes_.shifts, first)
-        .answer()
-        .contacts.front();
+    const QueryAnswer answer =
+        ContactQuery(meshes_.a, meshes_.b, meshes_.shifts, first).answer();
+    assert(!answer.contacts.empty());
+    return answer.contacts.front();
   }
 
   /// Divides the wall time in proportion to the times of the tasks. The time of
@@ -224,6 +227,7 @@ bool candidatesPair(const MeshInstance& a, const MeshInstance& b,
 void candidatesAtEnd(const MeshInstance& a, const MeshInstance& b,
                      const FeatureCandidateSink& sink, double distance,
                      const TrianglePairTest& is_wanted) {
+  assert(distance > 0);
   const DefaultFloatingPoint mode;
   BoxShifts shifts = shiftsOf(a, b, distance, false);
   shifts.leaveOutStart();

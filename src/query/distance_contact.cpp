@@ -69,8 +69,11 @@ class PartTable {
   }
 
   const DistanceContact& find(ContinuousContactKind kind, const Approach& found) const {
-    return contacts_[kind == ContinuousContactKind::kEdgeEdge][found.exchanges]
-                    [found.part];
+    assert(found.exchanges < kExchanges && found.part <= Approach::kInside);
+    const DistanceContact& contact =
+        contacts_[kind == ContinuousContactKind::kEdgeEdge][found.exchanges][found.part];
+    assert(contact.is_contact);
+    return contact;
   }
 
  private:
@@ -82,21 +85,27 @@ class PartTable {
 }  // namespace
 
 double cullDistanceOf(const MeshInstance& a, const MeshInstance& b, double d) {
+  assert(d > 0);
   // The tolerance of a pair is kTouching (d + L), with L at most the length of a vector
   // of three such coordinates, below twice their size. The rest is more than the rounding
   // of this.
-  return d * (1 + 2 * DistanceTolerance::kShare) +
-         2 * DistanceTolerance::kTouching * (d + 2 * sizeOf(a, b));
+  const double cull_distance = d * (1 + 2 * DistanceTolerance::kShare) +
+                               2 * DistanceTolerance::kTouching * (d + 2 * sizeOf(a, b));
+  assert(cull_distance >= d);
+  return cull_distance;
 }
 
 void enlarge(double cull_distance, KdopShift& shift) {
   // The first three directions are axes, the others have the length sqrt(2).
   constexpr double kDiagonal = 1.4142135623730952;
+  assert(cull_distance >= 0);
   for (int j = 0; j < 16; ++j)
-    for (Kdop16* box : {&shift.t0, &shift.t1})
+    for (Kdop16* box : {&shift.t0, &shift.t1}) {
+      const float before = box->half[j];
       box->half[j] = roundUp(
-          double{box->half[j]} + (j % 8 < 3 ? cull_distance : kDiagonal * cull_distance),
-          0.f);
+          double{before} + (j % 8 < 3 ? cull_distance : kDiagonal * cull_distance), 0.f);
+      assert(!(box->half[j] < before));
+    }
 }
 
 BoxShifts::BoxShifts(const KdopShift* between) : is_empty_(!between) {
@@ -117,11 +126,13 @@ BoxShifts::BoxShifts(const MeshInstance& a, const MeshInstance& b,
   // Kernels::mayComeWithin() leaves pairs within half of this to the test. What the test
   // takes for touching is much nearer.
   almost_ = 2 * DistanceTolerance::kAlmost * std::max(distance, size);
+  assert(almost_ < cull_distance_);
   // Two points come nearer by at most the root of 3 of what they move along an axis. A
   // pair at a distance D below d has to come nearer by kShare D and by what counts as
   // touching, which is more than the rounding; one that is further apart by kShare d:
   // advanceToDistance().
   speed_ = 2 / DistanceTolerance::kShare * (displacementOf(a) + displacementOf(b));
+  assert(speed_ >= 0);
 }
 
 void BoxShifts::leaveOutStart() {
@@ -132,6 +143,7 @@ void BoxShifts::leaveOutStart() {
 }
 
 double BoxShifts::cullDistance(double latest) const {
+  assert(0 <= latest && latest <= 1);
   const double share = speed_ * latest;
   return share < cull_distance_ ? std::min(cull_distance_, std::max(almost_, share))
                                 : cull_distance_;
@@ -146,12 +158,16 @@ KdopShift BoxShifts::shift(double cull_distance) const {
 FeatureContact contactOf(const FeatureIds& pair, const DistanceContact& found,
                          bool is_self) {
   constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
+  assert(found.is_contact && (!is_self || pair.first_on_a));
   FeatureContact contact{pair, found.toc_lo, found.toc_hi};
   contact.kind = found.kind;
   if (!isPart(found.kind)) return contact;
   const int num_first = pair.kind == ContinuousContactKind::kEdgeEdge ? 2 : 1;
-  for (int i = 0; i < 4; ++i)
+  for (int i = 0; i < 4; ++i) {
+    assert(found.points[i] < 4);
     contact.vertices[i] = found.points[i] < 0 ? kUnused : pair.vertices[found.points[i]];
+  }
+  assert(found.points[0] >= 0 && found.points[1] >= 0);
   bool is_first = found.points[0] < num_first;
   if (found.kind == ContinuousContactKind::kVertexEdge) {
     if (contact.vertices[2] < contact.vertices[1])

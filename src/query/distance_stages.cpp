@@ -35,6 +35,8 @@ DistanceRequest DistanceStages::request() const {
   request.t_max = options_.t_max;
   request.t_stop = findings_.latest();
   request.ignores_initially_closer = options_.ignores_initially_closer;
+  assert(request.distance > 0 && request.toc_err > 0);
+  assert(0 <= request.t_stop && request.t_stop <= request.t_max && request.t_max <= 1);
   return request;
 }
 
@@ -56,6 +58,7 @@ bool DistanceStages::filterDistances() {
 
 /// Leaves out those of the next eight pairs that stay further apart.
 void DistanceStages::filterEight() {
+  assert(left_ == 0 && next_ < batch_.size(kind_));
   const std::uint32_t* codes = batch_.codes(kind_) + next_;
   const std::size_t count = std::min<std::size_t>(8, batch_.size(kind_) - next_);
   left_ = is_at_start_ ? kernels_.approachAtStart(kind_, batch_.pairs(), codes, count,
@@ -64,6 +67,7 @@ void DistanceStages::filterEight() {
                        : kernels_.mayComeWithin(kind_, batch_.pairs(), codes,
                                                 batch_.windows(kind_) + next_, count,
                                                 request_, batch_.bends());
+  assert(left_ >> count == 0);
   counts_.filter_culled += count - static_cast<unsigned>(countBits(left_));
   next_ += 8;
 }
@@ -72,6 +76,8 @@ void DistanceStages::filterEight() {
 /// advance().
 bool DistanceStages::isSettled(std::size_t lane, FeatureCandidate& candidate) {
   const std::size_t i = next_ - 8 + lane;
+  assert(next_ >= 8 && i < batch_.size(kind_));
+  assert(!is_at_start_ || found_[lane].answer != Approach::Answer::kNo);
   const std::uint32_t code = batch_.codes(kind_)[i];
   batch_.setCandidate(code, is_at_start_ ? TimeWindow{0, 1} : batch_.windows(kind_)[i],
                       candidate);
@@ -93,6 +99,7 @@ bool DistanceStages::isSettled(std::size_t lane, FeatureCandidate& candidate) {
 }
 
 void DistanceStages::advance() {
+  assert(!candidates_.empty() && candidates_.size() <= kMostApproaching);
   FourPoints points[kMostApproaching];
   for (std::size_t i = 0; i < candidates_.size(); ++i)
     std::copy(candidates_[i].x, candidates_[i].x + 4, points[i].x);

@@ -38,6 +38,9 @@ FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
 }
 
 void FeatureBatch::setCullDistance(const KdopShift* shift, double cull_distance) {
+  // A distance is in the shift. Without one paths are not bent.
+  assert(cull_distance == 0 || (cull_distance > 0 && shift));
+  assert(cull_distance > 0 || !bends_.isAny());
   cull_distance_ = cull_distance;
   shift_ = shift;
   if (!shift) return;
@@ -74,6 +77,7 @@ void FeatureBatch::addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*
   // The triangles of a block are far apart in memory, so that each is prefetched eight
   // pairs before it is read.
   constexpr std::ptrdiff_t kAhead = 8;
+  assert(next <= last);
   const float last_beginning = lastBeginning(wanted.latest);
   const bool with_crossings = wanted.crossings;
   const std::uint32_t last_vertex = wanted.last_vertex;
@@ -129,10 +133,12 @@ void FeatureBatch::cullTriangles(double latest, StageCounts& counts) {
   // have.
   num_crossings_ = kernels_.cullCrossings(pairs_.get(), self_ ? nullptr : shift_,
                                           &turned_shift_, crossings_.get(), size);
+  assert(num_crossings_ <= size && size <= kEdges * num_pairs_);
 }
 
 /// Moves a triangle pair to the end of those that are kept.
 void FeatureBatch::keepPair(std::size_t i, std::size_t& kept) {
+  assert(kept <= i && i < num_pairs_);
   pairs_[kept] = pairs_[i];
   owned_[kept] = owned_[i];
   edges_[kept++] = edges_[i];
@@ -148,6 +154,7 @@ void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
     float gaps[8];
     const unsigned apart =
         kernels_.areApart(&pairs_[first], count, share, cull_distance_, gaps);
+    assert(apart >> count == 0);
     counts.plane_culled += static_cast<unsigned>(countBits(apart));
     for (unsigned left = ~apart & ((1U << count) - 1); left != 0; left &= left - 1) {
       const auto lane = static_cast<std::size_t>(lowestBit(left));
@@ -182,6 +189,7 @@ void FeatureBatch::leaveOutFar(StageCounts& counts) {
     const std::size_t count = std::min<std::size_t>(8, num_pairs_ - first);
     const unsigned mask =
         kernels_.stayApart(&pairs_[first], count, cull_distance_, bends_);
+    assert(mask >> count == 0);
     apart[first / 8] = static_cast<std::uint8_t>(mask);
     for (std::size_t i = 0; i < count; ++i)
       culled += owned_[first + i] != 0 ? mask >> i & 1U : 0;
@@ -232,15 +240,21 @@ std::size_t FeatureBatch::listPairs(ContinuousContactKind kind, StageCounts& cou
       owned_.get(), num_pairs_,
       kind == ContinuousContactKind::kVertexFace ? kVfPairs : edgePairsToTest(),
       list(kind).codes.get());
+  // The list has no room for more.
+  assert(size <= num_pairs_ * (kind == ContinuousContactKind::kVertexFace
+                                   ? kNumVertexFacePairs
+                                   : kNumFeaturePairs - kNumVertexFacePairs));
   counts.feature_pairs += size;
   return size;
 }
 
 void FeatureBatch::cullAtStart(ContinuousContactKind kind, StageCounts& counts) {
   List& list = this->list(kind);
+  assert(!bends_.isAny());
   const std::size_t size = listPairs(kind, counts);
   list.size = kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_, 0,
                                     gaps_.get(), list.codes.get(), size, nullptr);
+  assert(list.size <= size);
   counts.box_culled += size - list.size;
 }
 
@@ -268,6 +282,7 @@ void FeatureBatch::cull(ContinuousContactKind kind, double latest, StageCounts& 
                                     roundUp(latest, 0.f),
                                     isBeginning(latest) ? gaps_.get() : nullptr,
                                     list.codes.get(), size, list.windows.get());
+  assert(list.size <= size);
   counts.box_culled += size - list.size;
   if (filter) counts.mask_culled += keep(list, *filter);
 }
@@ -275,6 +290,7 @@ void FeatureBatch::cull(ContinuousContactKind kind, double latest, StageCounts& 
 FeatureBatch::EdgeAndFace FeatureBatch::crossing(std::size_t i) const {
   assert(i < num_crossings_);
   const std::uint32_t code = crossings_[i], bit = codeBit(code);
+  assert(codePair(code) < num_pairs_ && bit < kEdges);
   return {&pairs_[codePair(code)], bit % 3, bit < 3};
 }
 

@@ -32,6 +32,7 @@ struct OrderedEdge {
     const bool is_exchanged = q < p;
     swapIf(is_exchanged, k, l);
     swapIf(is_exchanged, p, q);
+    assert(p <= q);
     ids = std::uint64_t{p} << 32 | q;
     corners = (first + k) << 4 | (first + l);
   }
@@ -41,6 +42,7 @@ struct OrderedEdge {
 /// belongs to mesh a, and of two points the one with the lower id.
 void setFreePair(const TrianglePair& pair, bool is_self, FeatureCandidate& out) {
   constexpr std::uint32_t kUnused = ~std::uint32_t{0};
+  assert((pair.a->owned & pair.b->owned & kFreeLeaf) != 0);
   const bool edge_on_a = (pair.a->owned & kOwnsFirstEdge) != 0,
              edge_on_b = (pair.b->owned & kOwnsFirstEdge) != 0;
   assert(!(edge_on_a && edge_on_b));
@@ -59,6 +61,8 @@ void setFreePair(const TrianglePair& pair, bool is_self, FeatureCandidate& out) 
   out.vertices[1] = second.id[low];
   out.vertices[2] = has_edge ? second.id[1 - low] : kUnused;
   out.vertices[3] = kUnused;
+  assert(out.vertices[1] <= out.vertices[2]);
+  assert(!is_self || has_edge || out.vertices[0] <= out.vertices[1]);
   out.x[0] = pair.x[begin];
   out.x[1] = pair.x[end + low];
   out.x[2] = out.x[3] = pair.x[end + 1 - low];
@@ -71,6 +75,7 @@ void setCandidate(const TrianglePair& triangles, std::uint32_t bit,
   assert(!window.isEmpty());
   out.window_lo = windowLo(window);
   out.window_hi = windowHi(window);
+  assert(0 <= out.window_lo && out.window_lo <= out.window_hi && out.window_hi <= 1);
   out.triangles[0] = static_cast<std::int32_t>(triangles.a->index);
   out.triangles[1] = static_cast<std::int32_t>(triangles.b->index);
   if (bit == kFreePair) return setFreePair(triangles, is_self, out);
@@ -96,6 +101,7 @@ void setCandidate(const TrianglePair& triangles, std::uint32_t bit,
   swapIf(is_exchanged, edges[0].ids, edges[1].ids);
   swapIf(is_exchanged, edges[0].corners, edges[1].corners);
   swapIf(is_exchanged, out.triangles[0], out.triangles[1]);
+  assert(!is_self || edges[0].ids <= edges[1].ids);
   for (std::size_t i = 0; i < 2; ++i) {
     out.vertices[2 * i] = static_cast<std::uint32_t>(edges[i].ids >> 32);
     out.vertices[2 * i + 1] = static_cast<std::uint32_t>(edges[i].ids);
@@ -107,6 +113,7 @@ void setCandidate(const TrianglePair& triangles, std::uint32_t bit,
 std::uint8_t exchangesOf(const TrianglePair& triangles, std::uint32_t bit,
                          const FeatureCandidate& candidate, std::uint8_t exchanges) {
   if (candidate.kind != ContinuousContactKind::kEdgeEdge) return exchanges;
+  assert(bit >= kNumVertexFacePairs && bit < kNumFeaturePairs && exchanges < 8);
   const unsigned char(&corners)[4] = kFeaturePoints[bit];
   const TreeVertex *first = triangles.x[corners[0]], *second = triangles.x[corners[2]];
   const bool is_exchanged = candidate.x[2] == first || candidate.x[3] == first;

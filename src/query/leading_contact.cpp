@@ -33,6 +33,7 @@ class ContactPaths {
 bool mayTouchUntil(ContinuousContactKind kind, const FeaturePoints& x, double lo,
                    double latest) {
   constexpr double kCoarse = 0x1p-3;
+  assert(0 <= lo && lo <= latest && 0 < latest && latest <= 1);
   return solveCoplanarity(kind, x, lo, latest, kCoarse * latest).answer != Answer::kNo;
 }
 
@@ -40,6 +41,7 @@ bool mayTouchUntil(ContinuousContactKind kind, const FeaturePoints& x, double lo
 
 TimeBracket tightened(ContinuousContactKind kind, const FeaturePoints& x,
                       TimeBracket bracket) {
+  assert(0 <= bracket.lo && bracket.lo <= bracket.hi && bracket.hi <= 1);
   // Each round makes the bracket tight, or its upper end less than half of what it was.
   while (!bracket.isTight()) {
     const double width = std::max(0.25 * kTightShare * bracket.hi,
@@ -58,10 +60,12 @@ TimeBracket tightened(ContinuousContactKind kind, const FeaturePoints& x,
 }
 
 void FirstBracket::add(const TimeBracket& tight) {
+  assert(0 <= tight.lo && tight.lo <= tight.hi && tight.hi <= 1);
   first_hi_ = std::min(first_hi_, tight.hi);
   const bool is_earlier =
       tight.lo != first_.lo ? tight.lo < first_.lo : tight.hi < first_.hi;
   if (is_earlier) first_ = tight;
+  assert(first_.lo <= first_hi_ && first_hi_ <= first_.hi);
 }
 
 TimeBracket bracketOfFirst(const MeshInstance& a, const MeshInstance& b, double first_hi,
@@ -83,6 +87,8 @@ TimeBracket bracketOfFirst(const MeshInstance& a, const MeshInstance& b, double 
       if (mayTouchUntil(contact.kind, paths.points(), bracket.lo, latest))
         first.add(tightened(contact.kind, paths.points(), bracket));
     }
+  // The first contact is among them.
+  assert(first.get().lo <= first_hi);
   return first.get();
 }
 

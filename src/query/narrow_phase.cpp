@@ -29,6 +29,8 @@ NarrowPhase::NarrowPhase(const MeshInstance& a, const MeshInstance& b,
       touching_(batch_, findings_, mayRepeat(a, b)),
       distance_(batch_, findings_) {
   assert(&a == &b || !shifts.isEmpty());
+  assert(options.ignores_initially_closer ||
+         shifts.cullDistance(1) >= options.min_distance);
 }
 
 void NarrowPhase::setCullDistance(double cull_distance) {

@@ -18,8 +18,10 @@ struct NumberedTriangle {
 std::vector<NumberedTriangle> trianglesOf(const MeshInstance& mesh) {
   if (mesh.tree) {
     std::vector<NumberedTriangle> triangles(mesh.tree->triangles().size());
-    for (const TreeTriangle& from : mesh.tree->triangles())
+    for (const TreeTriangle& from : mesh.tree->triangles()) {
+      assert(from.index < triangles.size());
       std::copy(from.id, from.id + 3, triangles[from.index].ids);
+    }
     return triangles;
   }
   std::vector<NumberedTriangle> triangles(mesh.num_triangles);
@@ -54,6 +56,8 @@ TrianglesAtVertices::TrianglesAtVertices(const MeshInstance& mesh) {
       std::copy(triangles[i].ids, triangles[i].ids + 3, corner.ids);
     }
   }
+  // Each vertex has as many triangles as were counted.
+  assert(std::equal(next.begin(), next.end(), first_.begin() + 1));
 }
 
 bool TrianglesAtVertices::holds(const Corner& corner, const HeldFeature& feature) {

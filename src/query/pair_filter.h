@@ -7,6 +7,7 @@
 #ifndef FCL_CCD_QUERY_PAIR_FILTER_H
 #define FCL_CCD_QUERY_PAIR_FILTER_H
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -30,9 +31,11 @@ struct TriangleMarks {
   const std::uint32_t* masks{nullptr};
 
   std::uint32_t groupOf(std::int32_t triangle) const {
+    assert(!groups || triangle >= 0);
     return groups ? groups[triangle] : group;
   }
   std::uint32_t maskOf(std::int32_t triangle) const {
+    assert(!masks || triangle >= 0);
     return masks ? masks[triangle] : mask;
   }
   bool areAllEqual() const { return !groups && !masks; }
@@ -79,6 +82,7 @@ class TrianglesAtVertices {
   template <typename Visit>
   bool anyOf(const HeldFeature& feature, Visit&& visit) const {
     if (first_.empty()) return visit(feature.triangle);
+    assert(feature.count > 0 && std::size_t{feature.ids[0]} + 1 < first_.size());
     for (std::uint32_t i = first_[feature.ids[0]]; i < first_[feature.ids[0] + 1]; ++i)
       if (holds(corners_[i], feature) && visit(corners_[i].triangle)) return true;
     return false;
@@ -88,6 +92,7 @@ class TrianglesAtVertices {
   /// triangle that has the vertex several times is visited as often.
   template <typename Visit>
   void forEachAt(std::uint32_t vertex, Visit&& visit) const {
+    assert(std::size_t{vertex} + 1 < first_.size());
     for (std::uint32_t i = first_[vertex]; i < first_[vertex + 1]; ++i)
       visit(corners_[i].ids);
   }

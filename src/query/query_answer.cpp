@@ -166,9 +166,12 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
     }
   }
   answer.contacts = SortedContacts(std::move(contacts));
+  assert(answer.contacts.size() <= options.max_contacts);
   // With a distance all brackets are tight.
   if (options.query == ContinuousQuery::kFirst || at_distance)
     answer.first = firstListed(answer);
+  assert(0 <= answer.first.lo && answer.first.lo <= answer.first.hi &&
+         answer.first.hi <= 1);
   return answer;
 }
 

@@ -2,6 +2,7 @@
 #include "query/safe_displacement.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -81,6 +82,7 @@ class SafeBounds {
   };
 
   void lowerEight() {
+    assert(!eight_.empty() && eight_.size() <= 8);
     EightPoints points;
     points.kind = eight_.front()->kind;
     for (std::size_t lane = 0; lane < 8; ++lane)
@@ -106,8 +108,11 @@ class SafeBounds {
     for (int i = 0; i < count; ++i)
       for (int k = 0; k < 3; ++k) size = std::max(size, std::abs(pair.x[i]->t1[k]));
     const double safe = halfOf(least - min_distance_, size);
+    // Both features may move by it, and then keep the distance.
+    assert(safe == 0 || (safe > 0 && 2 * safe <= least - min_distance_));
     for (int i = 0; i < count; ++i) {
       double& bound = boundOf(pair, i);
+      assert(0 <= bound && bound <= most_);
       bound = std::min(bound, safe);
     }
   }
@@ -142,6 +147,9 @@ class SafeBounds {
 void lowerToSafe(const MeshInstance& a, const MeshInstance& b, double min_distance,
                  double most, std::vector<double>& bounds_a,
                  std::vector<double>& bounds_b) {
+  assert(min_distance >= 0 && 0 < most && most < std::numeric_limits<double>::infinity());
+  assert(bounds_a.size() == a.frames.size() && bounds_b.size() == b.frames.size());
+  assert((&a == &b) == (&bounds_a == &bounds_b));
   SafeBounds bounds(min_distance, most, bounds_a, bounds_b);
   const FeatureCandidateSink sink = [&bounds](const FeatureCandidate* pairs,
                                               std::size_t count) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "query/self_proofs.h"
 
+#include <cassert>
 #include <cstddef>
 #include <utility>
 
@@ -29,6 +30,8 @@ SelfProofs proveEmbedded(const MovingKdopTree& tree, bool with_regions, int num_
   }
   proofs.fans = findEmbeddedFans(tree, in_region, kernels(), num_threads);
   proofs.nodes_in_fans = findNodesInFans(tree, proofs.fans);
+  assert(proofs.fans.size() == tree.vertices().size());
+  assert(proofs.nodes_in_fans.empty() || proofs.nodes_in_fans.size() == tree.numNodes());
   return proofs;
 }
 
@@ -46,6 +49,7 @@ SelfProofs proveApart(const MovingKdopTree& tree, bool with_regions, double cull
     proofs.nodes_in_fans = std::move(apart.nodes);
   }
   proofs.fans = findEmbeddedFans(tree, apart.fans, kernels(), num_threads, cull_distance);
+  assert(proofs.fans.size() == apart.fans.size());
   for (std::size_t i = 0; i < proofs.fans.size(); ++i) proofs.fans[i] |= apart.fans[i];
   return proofs;
 }

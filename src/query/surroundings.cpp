@@ -28,6 +28,7 @@ void Surroundings::addStar(int mesh, std::uint32_t vertex,
                  [&] { triangles_[mesh] = TrianglesAtVertices(instance); });
   triangles_[mesh].forEachAt(vertex, [&](const std::uint32_t(&ids)[3]) {
     const int k = ids[0] == vertex ? 0 : ids[1] == vertex ? 1 : 2;
+    assert(ids[k] == vertex);
     const std::uint32_t next = ids[(k + 1) % 3], last = ids[(k + 2) % 3];
     out.push_back({{next, last}, {instance.frames[next], instance.frames[last]}});
   });

@@ -16,6 +16,10 @@ TaskFindings::TaskFindings(const QueryOptions& options, bool may_repeat,
       task_(task),
       first_(first) {
   assert(options.toc_err > 0 && options.max_contacts > 0);
+  assert(0 <= options.t_max && options.t_max <= 1);
+  assert(options.min_distance >= 0 && options.min_approach_speed >= 0);
+  // Those that touch are read with what is around them.
+  assert(!(options.min_approach_speed > 0) || options.surroundings);
 }
 
 void TaskFindings::begin(std::size_t task) {
@@ -82,6 +86,7 @@ void TaskFindings::add(const Crossing& crossing) {
 }
 
 void TaskFindings::refuse(const NonFiniteVertex& error, float earliest) {
+  assert(earliest >= 0);
   if (error_ && error_->earliest <= earliest) return;
   error_ = QueryError{earliest, error.mesh(), error.vertex()};
   QueryProgress::lower(progress_.first_hi, double{earliest});

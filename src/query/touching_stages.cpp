@@ -31,6 +31,7 @@ void TouchingStages::filterCoplanarity() {
         kernels_.coplanarity(kind_, batch_.pairs(), codes + first, windows + first,
                              std::min<std::size_t>(8, size - first), latest);
     unsigned left = found.possible | found.unclear;
+    assert(left >> std::min<std::size_t>(8, size - first) == 0);
     for (; left != 0; left &= left - 1) {
       const auto lane = static_cast<unsigned>(lowestBit(left));
       const std::size_t i = first + lane;
@@ -41,6 +42,7 @@ void TouchingStages::filterCoplanarity() {
       // The window does not end at `latest`, so that the bracket of a contact does not
       // depend on what was found before.
       candidate.window_hi = std::min(candidate.window_hi, findings_.options().t_max);
+      assert(candidate.window_lo <= candidate.window_hi);
       if (found.unclear >> lane & 1U &&
           !mayBecomeCoplanarAccurately(kind_, CandidatePoints(candidate).get(),
                                        candidate.window_lo,
@@ -59,16 +61,19 @@ void TouchingStages::solve(const std::vector<Piece>& pieces, OnNo&& on_no,
   for (std::size_t first = 0; first < pieces.size() && !findings_.isDone(); first += 8) {
     const EightAnswers answers =
         kernels_.solve(eightOf(pieces, first), findings_.options().toc_err);
+    assert((answers.no & answers.yes) == 0);
     const std::size_t last = std::min(pieces.size(), first + 8);
     for (std::size_t i = first; i < last && !findings_.isDone(); ++i) {
       const std::size_t lane = i - first;
-      if (answers.no >> lane & 1U)
+      if (answers.no >> lane & 1U) {
         on_no(pieces[i]);
-      else if (answers.yes >> lane & 1U)
-        add(candidates_[pieces[i].candidate],
-            {answers.toc_lo[lane], answers.toc_hi[lane]});
-      else
+      } else if (answers.yes >> lane & 1U) {
+        const TimeBracket found{answers.toc_lo[lane], answers.toc_hi[lane]};
+        assert(pieces[i].lo <= found.lo && found.hi <= pieces[i].hi);
+        add(candidates_[pieces[i].candidate], found);
+      } else {
         on_open(pieces[i]);
+      }
     }
   }
 }
@@ -105,6 +110,7 @@ void TouchingStages::solveRest() {
       pieces_,
       [this](const Piece& p) {
         const double window_hi = candidates_[p.candidate].window_hi;
+        assert(p.lo <= p.hi && p.hi <= window_hi);
         second_parts_.push_back({p.candidate, p.hi, window_hi});
       },
       isOpen);
@@ -120,12 +126,14 @@ void TouchingStages::divide() {
     const std::size_t last = std::min(open_.size(), first + 8);
     for (std::size_t i = first; i < last && !findings_.isDone(); ++i) {
       const std::size_t lane = i - first;
-      if (found.never_inside >> lane & 1U)
+      if (found.never_inside >> lane & 1U) {
         ++counts_.solver_culled;
-      else if (found.divisible >> lane & 1U)
+      } else if (found.divisible >> lane & 1U) {
+        assert(open_[i].lo <= found.at[lane] && found.at[lane] <= open_[i].hi);
         pieces_.push_back({open_[i].candidate, open_[i].lo, found.at[lane]});
-      else
+      } else {
         solveAlone(candidates_[open_[i].candidate]);
+      }
     }
   }
 }
@@ -158,6 +166,7 @@ ElementaryResult TouchingStages::decide(const FeatureCandidate& candidate,
                                                   candidate.window_hi)
                                      : 0;
   if (!(apart >= CoarseTime::kLeastTime)) return decideWithin(options.toc_err);
+  assert(candidate.window_lo <= apart && apart <= candidate.window_hi);
   const CoarseTime coarse(options.toc_err);
   const double earliest = coarse.beginning(apart);
   if (!findings_.mayMatter(candidate, {earliest, coarse.end(earliest)}))
@@ -165,8 +174,11 @@ ElementaryResult TouchingStages::decide(const FeatureCandidate& candidate,
   ElementaryResult result = decideWithin(coarse.widthFor(apart));
   if (result.answer == Answer::kYes) {
     result.toc_lo = coarse.beginning(std::max(apart, result.toc_lo));
+    // What was left out above with the earliest bracket is left out with this one too.
+    assert(earliest <= result.toc_lo);
     assert(result.toc_hi <= coarse.end(result.toc_lo));
     result.toc_hi = coarse.end(result.toc_lo);
+    assert((TimeBracket{result.toc_lo, result.toc_hi}.isTight()));
   }
   return result;
 }
@@ -174,6 +186,7 @@ ElementaryResult TouchingStages::decide(const FeatureCandidate& candidate,
 void TouchingStages::solveAlone(const FeatureCandidate& candidate) {
   const ElementaryResult result = decideOnce(candidate);
   const bool is_exact = result.decided_by == DecidedBy::kExact;
+  assert(result.answer != Answer::kUnsure);
   if (is_exact) ++counts_.exact_tests;
   if (result.answer == Answer::kNo)
     ++(is_exact ? counts_.exact_culled : counts_.solver_culled);

@@ -55,6 +55,7 @@ void TriangleReader::find(int i) {
 
 void TriangleReader::compute(int i, std::size_t slot) {
   const auto index = static_cast<std::size_t>(i);
+  assert(slot < kSlots && (!mesh_.tree || index < mesh_.tree->triangles().size()));
   TreeTriangle& triangle = triangles_[slot];
   if (mesh_.tree) {
     triangle = mesh_.tree->triangles()[index];
@@ -96,10 +97,12 @@ void TriangleReader::compute(int i, std::size_t slot) {
 
 /// Whether the vertex in a slot of the store has this id.
 bool TriangleReader::isStored(std::uint32_t id, std::size_t slot) const {
+  assert(slot < 3 * kSlots);
   return stored_[slot / 3] >= 0 && triangles_[slot / 3].id[slot % 3] == id;
 }
 
 void TriangleReader::pose(std::uint32_t id, TreeVertex& out) const {
+  assert(id < mesh_.frames.size());
   const VertexPath path = mesh_.frames[id];
   out.setPath(path.t0, path.t1);
   assert(!(mesh_.bend && mesh_.tree));
