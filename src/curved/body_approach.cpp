@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <boost/math/tools/minima.hpp>
+#include <cassert>
 #include <cmath>
 #include <tuple>
 #include <utility>
@@ -54,6 +55,7 @@ double mostOf(const BodiesNearOrigin& near, double max_distance) {
   const double radii = coreDistance(near.a.shape(), near.b.shape(), 0),
                sizes = 2 * (near.a.size() + near.b.size()) + kUnderflow,
                rounding = BodyTolerance(near.a, near.b, radii).touching;
+  assert(rounding >= 0);
   return std::max(std::min(sizes, max_distance), kTouchings * rounding);
 }
 
@@ -155,6 +157,9 @@ class BodyApproach::Search {
         windows_(calm_.body(0), calm_.body(1), tolerance_,
                  tolerance_.distance + calm_.deviation(), true),
         division_(windows_, false, counts_) {
+    assert(options.abs_err >= 0 && options.rel_err >= 0 && options.max_distance > 0);
+    assert(0 <= options.t_max && options.t_max <= 1 && most_ > 0);
+    assert(!options.float_times || static_cast<float>(options.t_max) == options.t_max);
     if (moveAsOne(near_.a, near_.b, tolerance_.distance)) {
       t_max_ = 0;
       // What they change: see moveAsOne().
@@ -242,6 +247,8 @@ class BodyApproach::Search {
 /// rounds.
 void BodyApproach::Search::setProved() {
   proved_ = std::min({proved_, most_, hi_ - tolerance()});
+  // A lower bound of what was not proved yet is below what was found.
+  assert(proved_ <= hi_);
   if (!(proved_ > 0)) return;
   tolerance_.distance = proved_ + may_change_ + tolerance_.radii;
   calm_tolerance_.distance = tolerance_.distance + calm_.deviation();
@@ -289,6 +296,7 @@ void BodyApproach::Search::probe(double t) {
 /// The nearest one of those that the last work was divided into; if there are none, the
 /// nearest one of all. So pairs are reached soon, and their distances leave out others.
 NearWork BodyApproach::Search::next() {
+  assert(!next_.empty() || !works_.empty());
   if (next_.empty()) {
     std::pop_heap(works_.begin(), works_.end(), isFurther);
     const NearWork near = works_.back();
@@ -341,6 +349,7 @@ bool BodyApproach::Search::areCalmlyApart(const PartWork& work) {
   if (!calm_.areCalmer()) return false;
   const ConvexPair pair(calm_.body(0), calm_.body(1), work);
   const double end = std::min(work.t1, t_max_);
+  assert(work.start <= end);
   ConvexAdvance between = pair.between(work.start, end, calm_tolerance_);
   double t = work.start;
   int left = kMostSteps;
@@ -355,6 +364,7 @@ void BodyApproach::Search::decidePair(const PartWork& work, const Pair& pair) {
   ++counts_.triangle_pairs;
   const double end = std::min(work.t1, t_max_);
   double t = work.start, lowered = 0;
+  assert(t <= end);
   while (proved_ > 0) {
     BodyTolerance wanted = tolerance_;
     wanted.distance -= lowered;
@@ -367,6 +377,7 @@ void BodyApproach::Search::decidePair(const PartWork& work, const Pair& pair) {
     const double before = t;
     const bool are_apart =
         between.advance(t, end, left, counts_) == AdvanceAnswer::kApart;
+    assert(before <= t && t <= end);
     // Up to t, too, no more was proved.
     if (lowered > 0 && (are_apart || t > before))
       given_up_ = std::min(given_up_, proved_ - lowered);
@@ -403,6 +414,7 @@ bool BodyApproach::Search::improve(const PartWork& work, const Pair& pair, doubl
   constexpr std::uintmax_t kMostRounds = 24;
   const double before = hi_, wanted = before - 0.5 * tolerance(),
                error = 0x1p-3 * tolerance();
+  assert(0 <= t0 && t0 <= t1 && t1 <= t_max_);
   const auto between = pair.between(t0, t1, tolerance_);
   const auto distanceAt = [&](double time) {
     const double t = options_.float_times ? static_cast<float>(time) : time;
@@ -447,6 +459,8 @@ ApproachAnswer BodyApproach::Search::answer() const {
   }
   // No pair counts: there is no distance.
   if (!(hi_ < HUGE_VAL) && !out.is_cut_off) out.lo = HUGE_VAL;
+  assert(0 <= out.lo && out.lo <= out.hi);
+  assert(0 <= out.time && out.time <= options_.t_max);
   return out;
 }
 

@@ -107,13 +107,15 @@ Vec centerAt(const MovingBody& body, double t, double& radius) {
 // rotations; it is measured.
 ChordBend bendOf(const MotionPath& path, double radius, double t0, double t1,
                  double most) {
+  assert(0 <= t0 && t0 < t1 && t1 <= 1 && radius >= 0 && most >= 0);
+  assert(path.axis() && path.turn());
   const PoseRate change = path.turnAccelerationAt(0.5 * (t0 + t1));
   const Pose from = path.pose(t0), to = path.pose(t1);
   const Vec& a = *path.axis();
   const double axis[3] = {a.x, a.y, a.z}, dt = t1 - t0, share = dt * dt / 8,
                angle = path.turn()->angle * dt,
                factor = 0.125 * angle * angle / sineCosine(0.5 * angle).cosine;
-  assert(factor >= 0);
+  assert(0 <= angle && angle < 3.14159 && factor >= 0);
   ChordBend out{};
   double(&m)[9] = out.bend.matrix;
   double square = 0, size = 0;
@@ -140,6 +142,7 @@ ChordBend bendOf(const MotionPath& path, double radius, double t0, double t1,
       std::sqrt(square) * radius + angle / 6 * most +
       0x1p-42 * (most + size +
                  3 * factor * (path.largestTranslation() + path.stretch() * radius));
+  assert(out.error >= 0);
   return out;
 }
 
@@ -154,6 +157,7 @@ bool ChordMesh::isRefit(double t0, double t1) const {
 // those of meshes that go straight. Later chords may be moved.
 const MeshInstance& ChordMesh::during(double t0, double t1, int num_threads,
                                       const Bend* bend) {
+  assert(0 <= t0 && t0 < t1 && t1 <= 1 && (!bend || turnsAsOne(body_)));
   mesh_ = body_.meshInBodyFrame();
   mesh_.bend = bend;
   const MotionPath& path = body_.path();
@@ -182,6 +186,7 @@ const MeshInstance& ChordMesh::during(double t0, double t1, int num_threads,
   mesh_.frames =
       VertexFrames(coordinates_[0].data(), coordinates_[1].data(), frames.size());
   mesh_.frames.setPoses(pose[0], pose[1]);
+  assert(mesh_.tree);
   if (tree_.triangles().empty()) tree_ = *mesh_.tree;
   tree_.refit(mesh_.frames, num_threads);
   mesh_.tree = &tree_;
@@ -218,6 +223,7 @@ ChordSearch::ChordSearch(const MovingBody& a, const MovingBody& b,
   // What is within the tolerance counts as contact. A chord has the error of its ends.
   const BodyTolerance tolerance(a, b, options.min_distance);
   error_ = tolerance.touching + tolerance.position;
+  assert(0 <= num_spans_ && error_ >= 0 && !(whole_[0] < 0) && !(whole_[1] < 0));
 }
 
 // A few spans are a power of two, so that their ends are dyadic. More than these are as
@@ -281,6 +287,7 @@ ChordSearch::Span ChordSearch::find(int i) {
   Span span;
   span.t0 = static_cast<double>(i) / num_spans_;
   span.t1 = static_cast<double>(i + 1) / num_spans_;
+  assert(0 <= span.t0 && span.t0 < span.t1 && span.t1 <= 1);
   const double deviation[2] = {deviationIn(0, span), deviationIn(1, span)};
   if (span.t0 > options_.t_max ||
       !mayMeet(span.t0, span.t1, (deviation[0] + deviation[1] + error_) * kUpward))
@@ -301,6 +308,8 @@ ChordSearch::Span ChordSearch::find(int i) {
   near.max_contacts = static_cast<std::size_t>(-1);
   near.t_max = std::min(1., (options_.t_max - span.t0) / (span.t1 - span.t0) * kUpward);
   near.all_crossings &= i == 0;
+  assert(near.min_distance >= options_.min_distance);
+  assert(0 <= near.t_max && near.t_max <= 1);
   // A bracket need not be narrow.
   near.toc_err = 1;
   near.names_parts = false;

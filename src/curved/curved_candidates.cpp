@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -35,6 +36,7 @@ struct SpannedPair {
     const unsigned char(&point)[4] = kFeaturePoints[bit];
     const int num_first = bit < kNumVertexFacePairs ? 1 : 2;
     const double apart = margin + deviation[0] + deviation[1];
+    assert(!(apart < margin));
     for (int k = 0; k < 3; ++k) {
       bool is_below = true, is_above = true;
       for (const auto& at : corner)
@@ -88,6 +90,7 @@ class CandidateList {
         margin_(min_distance + BodyTolerance(a, b, min_distance).touching) {}
 
   void add(const NearTriangles& near) {
+    assert(0 <= near.t0 && near.t0 <= near.t1 && near.t1 <= 1);
     const BodyTriangle a = a_.triangle(near.place[0]), b = b_.triangle(near.place[1]);
     const SpannedPair spanned(a_, a, b_, b, near.t0, near.t1);
     for (unsigned pairs = wantedPairs(a.owned, b.owned, at_distance_); pairs != 0;

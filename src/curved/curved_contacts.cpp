@@ -360,7 +360,11 @@ class ChordContacts {
   BodyTriangle triangleOf(const FeatureContact& pair, int k) const {
     const std::int32_t id = pair.triangles[k];
     const std::vector<std::int32_t>& places = places_[k];
-    return body_[k]->triangle(places.empty() ? id : places[static_cast<std::size_t>(id)]);
+    assert(id >= 0 && (places.empty() || static_cast<std::size_t>(id) < places.size()));
+    const BodyTriangle triangle =
+        body_[k]->triangle(places.empty() ? id : places[static_cast<std::size_t>(id)]);
+    assert(triangle.index == id);
+    return triangle;
   }
 
   /// The number of a pair of features of two triangles.
@@ -368,7 +372,11 @@ class ChordContacts {
                       const BodyTriangle& b) {
     const auto vertexOf = [&pair](const BodyTriangle& triangle, int i) {
       const auto id = static_cast<std::int32_t>(pair.vertices[i]);
-      return triangle.vertex[0] == id ? 0U : triangle.vertex[1] == id ? 1U : 2U;
+      const unsigned k = triangle.vertex[0] == id   ? 0U
+                         : triangle.vertex[1] == id ? 1U
+                                                    : 2U;
+      assert(triangle.vertex[k] == id);
+      return k;
     };
     const auto edgeOf = [&](const BodyTriangle& triangle, int i) {
       const unsigned first = vertexOf(triangle, i), second = vertexOf(triangle, i + 1);
@@ -387,6 +395,7 @@ class ChordContacts {
   /// rounding. The length of a span is exact. If it is a power of two only the sum below
   /// rounds, else the product too, by half a unit of less than the sum.
   static double timeBeyond(const ChordSearch::Span& span, double share, double end) {
+    assert(0 <= share && share <= 1);
     const double dt = span.t1 - span.t0, t = std::nextafter(span.t0 + share * dt, end);
     int exponent;
     return std::frexp(dt, &exponent) == 0.5 ? t : std::nextafter(t, end);
@@ -470,12 +479,14 @@ void complete(const QueryOptions& options, ContactSink& sink, QueryAnswer& answe
   answer.contacts = SortedContacts(std::move(lists));
   if (!answer.contacts.empty())
     answer.first = {answer.contacts.front().toc_lo, answer.contacts.front().toc_hi};
+  assert(answer.contacts.size() <= options.max_contacts);
   answer.counts.contacts = answer.contacts.size();
 }
 
 /// The contacts of triangles that may be the first.
 CurvedAnswer firstTriangles(const MovingBody& a, const MovingBody& b,
                             CurvedAnswer touching, CurvedOptions& wanted) {
+  assert(!touching.contacts.empty());
   wanted.all = true;
   wanted.proves_contacts = false;
   wanted.t_max = touching.contacts.front().toc_hi;
@@ -546,6 +557,7 @@ QueryAnswer contactsBy(ChordSearch& chords, const MovingBody& a, const MovingBod
 
 QueryAnswer queryCurvedContacts(const MovingBody& a, const MovingBody& b,
                                 const QueryOptions& requested) {
+  assert(a.isMesh() && b.isMesh());
   QueryOptions options = requested;
   const BodiesNearOrigin near(a, b);
   if (moveAsOne(near.a, near.b, options.min_distance)) options.t_max = 0;

@@ -2,6 +2,7 @@
 #include "curved/curved_query.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <deque>
 #include <memory>
@@ -167,6 +168,8 @@ class CurvedTraversal {
   void push(const PartWork& work) {
     const bool is_late =
         options_.all || contacts_.empty() ? work.start > latest_ : work.start >= latest_;
+    assert(0 <= work.t0 && work.t0 <= work.start);
+    assert(work.start <= work.t1 && work.t1 <= 1);
     if (!is_late) works_.push(work);
   }
 
@@ -247,7 +250,10 @@ class CurvedTraversal {
   /// All steps that the pair took in this span, before it was halved too; or in all of
   /// its spans, if they are very many.
   int& stepsOf(PartWork& work, PairOfManySpans* known) {
-    if (work.halves >= 0) return steps_of_halves_[static_cast<std::size_t>(work.halves)];
+    if (work.halves >= 0) {
+      assert(static_cast<std::size_t>(work.halves) < steps_of_halves_.size());
+      return steps_of_halves_[static_cast<std::size_t>(work.halves)];
+    }
     return known ? known->steps : work.steps;
   }
 
@@ -281,6 +287,7 @@ class CurvedTraversal {
     const MovingBody &a = body(0), &b = body(1);
     const std::int32_t place[2] = {~work.a.child, ~work.b.child};
     const double end = std::min(work.t1, latest_);
+    assert(work.start <= end);
     if (!a.isMesh() || !b.isMesh()) {
       const MovingConvex x = movingConvexOf(a, place[0]), y = movingConvexOf(b, place[1]);
       const std::int32_t index[2] = {a.isMesh() ? x.triangle.index : kNoTriangle,
@@ -312,7 +319,9 @@ class CurvedTraversal {
     const int all = std::max(options_.max_steps - steps, 0),
               most = isBentAlike() ? all : std::min(all, kMostStepsInSpan);
     int left = most;
+    [[maybe_unused]] const double before = work.start;
     const auto answer = pair.advance(work.start, t_stop, left, counts_);
+    assert(before <= work.start && work.start <= end);
     steps += most - left;
     setPartingDirection(pair, answer, work.start);
     if (answer == TriangleAdvance::Answer::kApart) return nullptr;
@@ -341,6 +350,8 @@ class CurvedTraversal {
                               ? ContactCertainty::kCrossing
                               : ContactCertainty::kWithinTolerance;
     }
+    assert(0 <= contact.toc_lo && contact.toc_lo <= contact.toc_hi);
+    assert(contact.toc_hi <= 1);
     contacts_.push_back(contact);
     if (!options_.all) {
       latest_ = std::min(latest_, contact.toc_lo);
@@ -422,6 +433,7 @@ CurvedOptions curvedOptionsOf(const MovingBody& a, const MovingBody& b,
   wanted.t_max = options.t_max;
   wanted.distance = options.min_distance;
   wanted.ignores_initially_closer = !are_meshes && options.ignores_initially_closer;
+  assert(0 <= wanted.t_max && wanted.t_max <= 1 && wanted.distance >= 0);
   if (all) wanted.num_threads = options.num_threads;
   wanted.rules = options.filter ? &options.filter->rules() : nullptr;
   // Features are advanced by directions that turn, which takes fewer steps.

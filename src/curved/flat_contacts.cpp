@@ -2,6 +2,7 @@
 #include "curved/flat_contacts.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "advance/convex_advance.h"
 #include "numerics/error_bounds.h"
@@ -61,6 +62,7 @@ QueryAnswer queryFlats(const PosedFlat& a, const PosedFlat& b,
     if (begin > 0) {
       if (end > 0) return answer;
       const double t = begin / (begin - end);
+      assert(!(t < 0) && !(t > 1));
       contact.toc_lo = t * (1 - 0x1p-48);
       contact.toc_hi = contact.toc_lo;
       contact.within_tolerance = true;
@@ -80,6 +82,7 @@ QueryAnswer queryFlats(const PosedFlat& a, const PosedFlat& b,
   answer.pose_time = contact.toc_hi;
   if (contact.toc_lo > 0 && (a.is_solid || b.is_solid) && !(options.min_distance > 0))
     answer.pose_time = std::min(options.t_max, contact.toc_lo + options.toc_err);
+  assert(!(answer.pose_time < answer.first.hi) && !(answer.pose_time > 1));
   answer.counts.contacts = 1;
   return answer;
 }

@@ -2,6 +2,7 @@
 #include "curved/overlap_at_start.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "numerics/error_bounds.h"
@@ -65,6 +66,7 @@ class HeightsAtStart {
     bool is_below = false;
     while (!part.isTriangle()) {
       const int count = mesh_.children(part, children);
+      assert(0 < count && count <= BodyBoxes::kWidth);
       part = children[0];
       if (is_below) continue;
       double least = HUGE_VAL;
@@ -119,6 +121,7 @@ class HeightsAtStart {
 
 bool overlapDeeplyAtStart(const ConvexShape& a, const Pose& pose_a, const ConvexShape& b,
                           const Pose& pose_b) {
+  assert(!a.flat() || !b.flat());
   if (a.flat())
     return isDeepOverlap(overlapOfFlat(a, pose_a, b, pose_b), b.outerRadius());
   if (b.flat())

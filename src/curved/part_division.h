@@ -6,6 +6,7 @@
 #define FCL_CCD_CURVED_PART_DIVISION_H
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -40,6 +41,7 @@ class PartDivision {
   /// @brief Tests the pair in its span.
   template <typename Push>
   void testAlone(const PartWork& work, Push&& push) {
+    assert(isOrdered(work));
     const int many = windows_.openedAlone();
     const BodyPart &part = many == 1 ? work.b : work.a,
                    &other = many == 1 ? work.a : work.b;
@@ -53,8 +55,10 @@ class PartDivision {
   void divide(PartWork work, double latest, Push&& push) {
     // In the shortest span the deviation is 2^-43 of the acceleration.
     constexpr double kShortest = 0x1p-20, kLeastShare = 0x1p-6, kMuch = 0x1p6;
+    assert(!isPair(work));
     const double most_deviation = mostDeviation(work);
     work.t1 = std::min(work.t1, std::max(latest, work.t0));
+    assert(isOrdered(work));
     const PartWindows::PartSpan span[2] = {
         windows_.partSpan(0, work.a, work.t0, work.t1),
         windows_.partSpan(1, work.b, work.t0, work.t1)};
@@ -72,6 +76,7 @@ class PartDivision {
       if (mayPart(work, span)) return halveTiny(work, push);
     }
     const BodyPart& part = opened == 1 ? work.b : work.a;
+    assert(!part.isTriangle());
     test(work, opened, windows_.side(opened).reader.open(part), &part, span[1 - opened],
          push);
   }
@@ -86,9 +91,11 @@ class PartDivision {
             const PartWindows::PartSpan& other, Push&& push) {
     // A node of an octree may be occupied while none of its children is.
     if (node.count == 0) return;
+    assert(0 < node.count && node.count <= BodyBoxes::kWidth);
     counts_.box_tests += static_cast<std::uint64_t>(node.count);
     const double dt = work.t1 - work.t0;
     const MeetingWindows windows = windows_.windows(work, opened, node, part, other);
+    assert(windows.mask >> node.count == 0);
     for (unsigned left = windows.mask; left != 0; left &= left - 1) {
       const int lane = lowestBit(left);
       PartWork child = work;
@@ -98,8 +105,15 @@ class PartDivision {
       const double end = std::min(work.t1, work.t0 + windows.hi[lane] * dt);
       if (child.start > end) continue;
       setSpan(end, child);
+      // The span contains the window, and is a part of that of the work.
+      assert(isOrdered(child) && end <= child.t1);
+      assert(work.t0 <= child.t0 && child.t1 <= work.t1);
       push(child, windows_.measuresGaps() ? windows_.leastDistance(windows, lane) : 0.);
     }
+  }
+
+  static bool isOrdered([[maybe_unused]] const PartWork& work) {
+    return 0 <= work.t0 && work.t0 <= work.start && work.start <= work.t1 && work.t1 <= 1;
   }
 
   /// The largest power of two that is at most a quarter of x.
@@ -170,6 +184,7 @@ class PartDivision {
 
   static std::pair<PartWork, PartWork> halvesOf(const PartWork& work) {
     const double middle = 0.5 * (work.t0 + work.t1);
+    assert(work.t0 < middle && middle < work.t1);
     std::pair<PartWork, PartWork> halves(work, work);
     halves.first.t1 = halves.second.t0 = middle;
     halves.second.start = std::max(work.start, middle);

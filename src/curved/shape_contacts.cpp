@@ -2,6 +2,7 @@
 #include "curved/shape_contacts.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <tuple>
 #include <utility>
@@ -125,6 +126,7 @@ class ShapeContacts {
       best = time;
       deepest = overlap;
     }
+    assert(first <= best && best <= end);
     return best;
   }
 
@@ -160,6 +162,9 @@ class ShapeContacts {
 
 /// Keeps those that may be the first.
 void keepFirst(std::vector<CurvedContact>& contacts) {
+  assert(
+      std::is_sorted(contacts.begin(), contacts.end(),
+                     [](const auto& x, const auto& y) { return x.toc_lo < y.toc_lo; }));
   double first_hi = 1;
   for (const CurvedContact& contact : contacts)
     first_hi = std::min(first_hi, contact.toc_hi);
@@ -216,6 +221,9 @@ QueryAnswer queryShapeContacts(const MovingBody& a, const MovingBody& b,
   if (!(options.min_distance > 0))
     answer.pose_time =
         contacts.poseTimeOf(touching.front(), options.toc_err, options.t_max);
+  assert(0 <= answer.first.lo && answer.first.lo <= answer.first.hi &&
+         answer.first.hi <= 1);
+  assert(options.min_distance > 0 || answer.first.hi <= answer.pose_time);
   return answer;
 }
 
