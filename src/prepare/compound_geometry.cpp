@@ -2,6 +2,7 @@
 #include "fcl/geometry/compound_geometry.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -50,6 +51,21 @@ double halfWidth(const BodyBox& box, int k) {
   return half;
 }
 
+#ifndef NDEBUG
+template <typename Parts>
+bool containsAll(const BodyBox& whole, const Parts& parts) {
+  return std::all_of(parts.begin(), parts.end(), [&](const auto& part) {
+    for (int k = 0; k < 3; ++k) {
+      const double half = halfWidth(whole, k), half_of_part = halfWidth(part.box, k);
+      if (whole.center[k] - half > part.box.center[k] - half_of_part ||
+          whole.center[k] + half < part.box.center[k] + half_of_part)
+        return false;
+    }
+    return true;
+  });
+}
+#endif
+
 /// The least box along the axes of the compound.
 template <typename S>
 BodyBox boxAround(const std::vector<typename CompoundParts<S>::Part>& parts) {
@@ -68,6 +84,7 @@ BodyBox boxAround(const std::vector<typename CompoundParts<S>::Part>& parts) {
   const double size = deformable::norm(out.extent);
   out.pad = kRounding * (deformable::norm(out.center) + size);
   out.radius = (size + out.pad) * deformable::kUpward;
+  assert(containsAll(out, parts));
   return out;
 }
 

@@ -2,6 +2,7 @@
 #include "prepare/object_bounds.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -44,6 +45,7 @@ double accelerationOf(const AccelerationBound& bound, const BodyBox (&box)[2]) {
 /// The box of a body at t in the world, without the deviation in a span.
 /// @param pose  at t
 HalfAxisBox boxAt(const BodyBox (&box)[2], const Pose& pose, double t, double pad) {
+  assert(0 <= t && t <= 1 && !(pad < 0));
   const BodyBox &from = box[0], &to = box[1];
   double center[3], extent[3];
   for (int k = 0; k < 3; ++k) {
@@ -72,6 +74,7 @@ int numSpans(const BodyBox (&box)[2], double acceleration, int most) {
                wanted = kDeviation * std::max(box[0].radius, box[1].radius);
   int n = 1;
   while (n < most && deviation > wanted * n * n) n *= 2;
+  assert(1 <= n && n <= most && most <= kMostSpans);
   return n;
 }
 
@@ -155,6 +158,7 @@ MovingFlat movingFlat(const FlatShape& shape, const MotionPath& path) {
   flat.room =
       kRoom * size + 8 * (path.positionError(distance) + path.rotationError() * speed);
   flat.room_per_distance = kRoom + 8 * path.rotationError();
+  assert(!(flat.room < 0) && !(flat.bend < 0));
   const int n = flat.goesStraight() ? 1 : kMostSpans;
   const Vec pivot = posed(path.pose(0.5), foot);
   flat.pivot[0] = pivot.x;
@@ -202,6 +206,7 @@ void appendFlat(const PlacedGeometry<S>& placed, BoundsList& list) {
 }  // namespace
 
 const Pose& PathPoses::at(int i, int n) {
+  assert(0 <= i && i <= n && 0 < n && kMostSpans % n == 0);
   std::optional<Pose>& pose = poses_[std::size_t(i * (kMostSpans / n))];
   if (!pose) pose = path_.pose(double(i) / n);
   return *pose;
@@ -223,6 +228,7 @@ void appendBox(const BodyBox (&body)[2], PathPoses& poses, int most_spans,
                    stretch * box.pad + path.positionError(norm(box.center) + box.radius));
   }
   const std::size_t first = list.boxes.size();
+  assert(!(acceleration < 0) && !(pad < 0));
   for (int i = 0; i <= n; ++i)
     list.boxes.push_back(boxAt(body, poses.at(i, n), double(i) / n, pad + kRoom * size));
   double before = 0;
@@ -238,6 +244,7 @@ void appendBox(const BodyBox (&body)[2], PathPoses& poses, int most_spans,
       half += std::max(before, after);
     before = after;
   }
+  assert(list.boxes.size() == first + static_cast<std::size_t>(n) + 1);
   const auto end = list.boxes.end();
   if (!std::all_of(end - (n + 1), end, isFinite)) refuse(path.name());
   list.items.push_back({first, n});
@@ -258,6 +265,7 @@ bool isBounded(const PlacedGeometry<S>& placed) {
 
 template <typename S>
 BoundedBody boundedBodyOf(const PlacedGeometry<S>& placed, const char* name) {
+  assert(isBounded(placed));
   requireFinite(placed.beginning(), placed.end(), name);
   if (placed.isShape()) {
     const MotionPath path = motionPathOf(placed, name);

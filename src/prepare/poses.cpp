@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cassert>
 
 #include "base/default_floating_point.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
@@ -23,6 +24,7 @@ PoseNumbers<S> toNumbers(const deformable::Pose& pose) {
 
 template <typename S>
 PoseNumbers<S> poseAt(const MovingGeometry<S>& o, S t) {
+  assert(!(t < 0) && !(t > 1));
   const deformable::DefaultFloatingPoint mode;
   const PlacedGeometry<S> placed(o);
   if (!placed.goesStraight())

@@ -2,6 +2,7 @@
 #include "prepare/prepared_mesh.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cfloat>
 #include <cmath>
 #include <cstdint>
@@ -162,6 +163,7 @@ PreparedMesh::PreparedMesh(const CollisionGeometry<S>& geometry, const Pose& beg
     throw Exception(name +
                     ": an update of the model has begun and not ended. Call "
                     "endUpdateModel() or endReplaceModel() first");
+  assert(meshKindOf(geometry) != MeshKind::kNotAMesh);
   if (const DeformableMesh* mesh = deformableMeshOf(geometry)) {
     instance_.frames = mesh->frames();
     instance_.frames.setPoses(beginning, end);
@@ -203,6 +205,7 @@ void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning
   instance_.triangles = model.tri_indices;
   instance_.num_triangles = static_cast<std::size_t>(model.num_tris);
   if (!deforming && isTreeSound(model)) {
+    assert(std::equal(beginning.rotation, beginning.rotation + 9, end.rotation));
     instance_.rigid = RigidTree(fclTree(model), beginning);
     if (owners == FeatureOwners::kAlways) {
       requireIndices(model, name);
@@ -210,6 +213,7 @@ void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning
         owners_ = assignFeatures(model.tri_indices,
                                  static_cast<std::size_t>(model.num_tris), count);
       });
+      assert(owners_.size() == instance_.num_triangles);
       instance_.owners = owners_.data();
     }
     return;

@@ -2,6 +2,7 @@
 #include "prepare/prepared_motion.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -148,6 +149,8 @@ PreparedMotion::PreparedMotion(const PlacedGeometry<S>& placed, const std::strin
                                double toc_err, int num_threads, double other_radius,
                                double scale, ConvexShape* shape)
     : name_(name) {
+  assert(toc_err >= 0 && other_radius >= 0 && scale > 0);
+  assert(placed.isKnown() && (placed.isShape() || (scale == 1 && !shape)));
   if (shape) shape_.emplace(std::move(*shape));
   const MotionPath path = motionPathOf(placed, name_.c_str());
   if (placed.isShape()) {
@@ -171,6 +174,7 @@ PreparedMotion::PreparedMotion(const PlacedGeometry<S>& placed, const std::strin
     else
       body_.emplace(mesh.rigid, mesh.frames, mesh.triangles, path);
   }
+  assert(mesh_.has_value() + shape_.has_value() + octree_.has_value() == 1);
   requireDefined(placed, name, toc_err);
   requireInRange(name);
 }
@@ -222,6 +226,7 @@ void PreparedMotion::requireFinite(const VertexFrames& frames,
 }
 
 VertexPath PreparedMotion::tangentAt(std::uint32_t vertex, double t) const {
+  assert(mesh_ && vertex < mesh_->instance().frames.size());
   const VertexPath from = mesh_->instance().frames[vertex];
   const Pose pose = body_->path().pose(t);
   const PoseRate rate = body_->path().rate(t);
@@ -231,6 +236,7 @@ VertexPath PreparedMotion::tangentAt(std::uint32_t vertex, double t) const {
 }
 
 MeshInstance PreparedMotion::beginning() const {
+  assert(mesh_);
   MeshInstance mesh = mesh_->instance();
   // Where the vertices are posed already, the path of the body is the identity.
   if (mesh.frames.isPosed()) return mesh;

@@ -2,6 +2,8 @@
 #ifndef FCL_CCD_PREPARE_PREPARED_SHAPES_H
 #define FCL_CCD_PREPARE_PREPARED_SHAPES_H
 
+#include <cassert>
+
 #include "curved/overlap_at_start.h"
 #include "prepare/convex_shapes.h"
 #include "prepare/query_arguments.h"
@@ -51,6 +53,8 @@ bool areFoundToOverlap(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                        const Otherwise& otherwise) {
   using deformable::ConvexShape;
   using deformable::convexShapeOf;
+  assert(!deformable::isUnbounded(o1.geometry()) ||
+         !deformable::isUnbounded(o2.geometry()));
   PreparedShapes shapes;
   if (!beginsAsGiven(o1) || !beginsAsGiven(o2)) {
     otherwise(shapes);
