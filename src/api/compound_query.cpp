@@ -2,6 +2,7 @@
 #include "api/compound_query.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -91,6 +92,7 @@ template <typename S>
 std::vector<int> CompoundSide<S>::appendNear(const deformable::MovingBounds& other,
                                              double distance, PathPoses& poses,
                                              BoundsList& list) const {
+  assert(isCompound());
   const bool is_straight = poses.acceleration().isZero();
   const auto meets = [&] {
     return !deformable::meetingWindow(list.at(list.items.size() - 1), other, distance)
@@ -179,6 +181,7 @@ std::vector<PartPair> CompoundPair<S>::near(
   if (poses2) near2 = side2_.appendNear(all1, distance, *poses2, bounds2);
   const BoundsList &list1 = side1_.isCompound() ? bounds1 : whole1,
                    &list2 = side2_.isCompound() ? bounds2 : whole2;
+  assert(near1.size() == list1.items.size() && near2.size() == list2.items.size());
   std::vector<PartPair> pairs;
   for (std::size_t i = 0; i < near1.size(); ++i)
     for (std::size_t k = 0; k < near2.size(); ++k) {
@@ -201,6 +204,8 @@ bool CompoundPair<S>::visitNearest(
   BoundsList bounds1, bounds2;
   side1_.appendBounds(bounds1);
   side2_.appendBounds(bounds2);
+  assert(bounds1.items.size() == static_cast<std::size_t>(side1_.count()));
+  assert(bounds2.items.size() == static_cast<std::size_t>(side2_.count()));
   struct Candidate {
     double gap;
     int part1, part2;
@@ -245,6 +250,7 @@ QueryOutcome<S> earliestOf(const std::vector<PartAnswer<S>>& answers) {
   QueryOutcome<S> earliest{false, 1, 1, 1};
   for (const PartAnswer<S>& answer : answers) {
     const QueryOutcome<S>& one = answer.result.outcome;
+    assert(one.is_collide && one.toc_lo <= one.toc_hi);
     if (!earliest.is_collide ||
         std::tie(one.toc_lo, one.toc_hi) < std::tie(earliest.toc_lo, earliest.toc_hi))
       earliest = one;

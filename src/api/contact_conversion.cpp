@@ -8,6 +8,7 @@
 #include "elementary/elementary.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <iterator>
 
@@ -138,7 +139,10 @@ DescribedContact ContactDescriber::operator()(const Crossing& crossing) const {
   const Vector3<double> position = vec(0) + std::min(std::max(s, 0.), 1.) * edge;
   out.position = toVec(position);
   const double length = normal.norm();
-  if (length > 0 && std::isfinite(length)) out.normal = toVec(normal / length);
+  if (length > 0 && std::isfinite(length)) {
+    out.normal = toVec(normal / length);
+    assert(std::abs(norm(out.normal) - 1) < 0x1p-48);
+  }
   return out;
 }
 
@@ -176,19 +180,26 @@ Contact<S> toContact(const ContinuousContact<S>& contact) {
 template <typename S>
 S roundTimeDown(double t) {
   const auto rounded = static_cast<S>(t);
-  return static_cast<double>(rounded) > t ? std::nextafter(rounded, S(0)) : rounded;
+  const S out =
+      static_cast<double>(rounded) > t ? std::nextafter(rounded, S(0)) : rounded;
+  assert(!(out < 0) && !(static_cast<double>(out) > t));
+  return out;
 }
 
 template <typename S>
 S roundTimeUp(double t) {
   const auto rounded = static_cast<S>(t);
-  return static_cast<double>(rounded) < t ? std::nextafter(rounded, S(1)) : rounded;
+  const S out =
+      static_cast<double>(rounded) < t ? std::nextafter(rounded, S(1)) : rounded;
+  assert(!(out > 1) && !(static_cast<double>(out) < t));
+  return out;
 }
 
 template <typename S>
 QueryOutcome<S> outcomeOf(const QueryAnswer& answer) {
   if (answer.hasCrossing()) return {true, 0, 0, 0};
   if (!answer.hasContact()) return {false, 1, 1, 1};
+  assert(!(answer.first.lo > answer.first.hi) && !(answer.pose_time > 1));
   const S hi = roundTimeUp<S>(answer.first.hi);
   return {true, roundTimeDown<S>(answer.first.lo), hi,
           std::max(hi, static_cast<S>(answer.pose_time))};
@@ -202,6 +213,7 @@ void fillContacts(const QueryAnswer& answer, const ContactDescriber& describe,
   const auto convert = [&](const auto& contact) {
     return toContinuousContact<S>(describe(contact), o1, o2);
   };
+  assert(answer.contacts.empty() || answer.shape_contacts.empty());
   const bool has_shape = !answer.shape_contacts.empty();
   const std::size_t count =
       has_shape ? answer.shape_contacts.size() : answer.contacts.size();
@@ -217,6 +229,7 @@ void fillContacts(const QueryAnswer& answer, const ContactDescriber& describe,
     convertAll(answer.shape_contacts, convert, 1, result.contacts);
   else
     convertAll(answer.contacts, convert, options.num_threads, result.contacts);
+  assert(result.contacts.size() == count);
   result.contacts_cut = answer.cut;
   result.is_triangle_soup = false;
   result.initially_crossing = answer.hasCrossing();

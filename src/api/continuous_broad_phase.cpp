@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 #include <unordered_set>
@@ -57,14 +58,17 @@ void readBounds(void* const* objects, std::size_t count, Read read,
       throw Exception(std::string(error.what()) + " (object " + std::to_string(i) +
                       " of the list)");
     }
+    assert(bounds.items.size() == i + 1);
   }
 }
 
 std::vector<BroadPhasePair> toPairs(const std::vector<MeetingObjects>& meeting) {
   std::vector<BroadPhasePair> pairs;
   pairs.reserve(meeting.size());
-  for (const MeetingObjects& pair : meeting)
+  for (const MeetingObjects& pair : meeting) {
+    assert(!pair.window.isEmpty());
     pairs.push_back({pair.window.lo, pair.window.hi, pair.o1, pair.o2});
+  }
   return pairs;
 }
 
@@ -187,6 +191,8 @@ StepBox ContinuousBroadPhase<S>::stepBox(const void* object, Read read) {
     };
     out.lower[k] = step(-below, -HUGE_VAL);
     out.upper[k] = step(above, HUGE_VAL);
+    assert(out.lower[k] <= -below && above <= out.upper[k]);
+    assert(out.lower[k] <= out.upper[k]);
   }
   return out;
 }

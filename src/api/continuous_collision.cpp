@@ -134,6 +134,7 @@ QueryAnswer boundedAnswerOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>
                             double scale = 1) {
   const int first = firstOf(o1), second = 1 - first;
   const PlacedGeometry<S>* const object[2] = {&o1, &o2};
+  assert(!deformable::isUnbounded(object[first]->geometry()));
   const PreparedMotion bounded(*object[first], nameOf(first), options.toc_err,
                                options.num_threads, 0, scale, shapes.shape[first]),
       other(*object[second], nameOf(second), options.toc_err, options.num_threads,
@@ -162,6 +163,7 @@ QueryAnswer scaledAnswerOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>&
                            const PreparedShapes& shapes) {
   const MovingGeometry<S> moving1 = scaledPath(o1.moving(), factor),
                           moving2 = scaledPath(o2.moving(), factor);
+  assert(std::ldexp(1, std::ilogb(factor)) == factor);
   options.min_distance *= factor;
   QueryAnswer answer = boundedAnswerOf(
       PlacedGeometry<S>(moving1), PlacedGeometry<S>(moving2), options, shapes, factor);
@@ -241,7 +243,9 @@ std::vector<PartAnswer<S>> answersOf(const std::vector<PartPair>& pairs,
   std::vector<PartAnswer<S>> answers;
   double latest = options.t_max, next_latest = latest;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
+    assert(i == 0 || pairs[i - 1].t_lo <= pairs[i].t_lo);
     if (i > 0 && pairs[i].t_lo > pairs[i - 1].t_lo) latest = next_latest;
+    assert(0 <= latest && latest <= options.t_max);
     if (pairs[i].t_lo > latest) break;
     PartAnswer<S> tested;
     if (!test(pairs[i], latest, tested)) continue;

@@ -2,6 +2,7 @@
 #include "fcl/narrowphase/continuous_distance.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -55,9 +56,11 @@ ApproachOptions optionsOf(const ContinuousDistanceRequest<S>& request) {
 template <typename S>
 S roundedDown(double x) {
   const S near = static_cast<S>(x);
-  return static_cast<double>(near) > x
-             ? std::nextafter(near, -std::numeric_limits<S>::infinity())
-             : near;
+  const S out = static_cast<double>(near) > x
+                    ? std::nextafter(near, -std::numeric_limits<S>::infinity())
+                    : near;
+  assert(static_cast<double>(out) <= x);
+  return out;
 }
 template <typename S>
 S roundedUp(double x) {
@@ -74,6 +77,7 @@ ContinuousDistanceResult<S> resultOf(const ApproachAnswer& answer) {
   ContinuousDistanceResult<S> out;
   out.distance_lo = roundedDown<S>(answer.lo);
   out.distance_hi = roundedUp<S>(answer.hi);
+  assert(0 <= out.distance_lo && out.distance_lo <= out.distance_hi);
   out.time = static_cast<S>(answer.time);
   for (int k = 0; k < 2; ++k) out.nearest_points[k] = toVector<S>(answer.point[k]);
   out.b1 = static_cast<std::intptr_t>(answer.triangle[0]);
@@ -93,6 +97,7 @@ ContinuousDistanceResult<S> noDistance() {
 template <typename S>
 ContinuousDistanceResult<S> touchingAt(const ContinuousContactResult<S>& found) {
   ContinuousDistanceResult<S> out;
+  assert(found.initially_crossing || !found.contacts.empty());
   out.is_collide = true;
   out.time = found.time_of_contact;
   const ContinuousContact<S>& first =
@@ -245,6 +250,7 @@ class CompoundDistance {
     const S least = std::min(best_.distance_lo, one.distance_lo);
     if (one.is_collide || one.distance_hi < best_.distance_hi) best_ = one;
     best_.distance_lo = least;
+    assert(best_.distance_lo <= best_.distance_hi);
     // A pair that is not nearer need not be measured. 0 is no limit that a query takes.
     if (one.distance_hi > 0)
       request_.max_distance = std::min(request_.max_distance, one.distance_hi);

@@ -2,6 +2,7 @@
 #include "fcl/narrowphase/continuous_features.h"
 
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -72,10 +73,12 @@ ContinuousFeatureTestResult<S> test(ContinuousContactKind kind,
     const DistanceContact found =
         advanceToDistance(kind, {{&x[0], &x[1], &x[2], &x[3]}}, request);
     if (!found.is_contact) return {};
+    assert(found.toc_lo <= found.toc_hi);
     return {true, roundTimeDown<S>(found.toc_lo), roundTimeUp<S>(found.toc_hi)};
   }
   const ElementaryResult result = touchingTest(kind, x, toc_err);
   if (result.answer == Answer::kNo) return {};
+  assert(result.answer == Answer::kYes && result.toc_lo <= result.toc_hi);
   return {true, roundTimeDown<S>(result.toc_lo), roundTimeUp<S>(result.toc_hi)};
 }
 

@@ -2,6 +2,7 @@
 #include "fcl/narrowphase/detail/traversal/collision/deformable_continuous_collision_traversal_node.h"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -34,11 +35,15 @@ class BinaryView {
   bool isLeaf(int b) const {
     return heapIndex(b) >= 8 && (isEmpty(b) || node(b).isTriangle(firstLane(b)));
   }
-  int triangle(int b) const { return node(b).triangle(firstLane(b)); }
+  int triangle(int b) const {
+    assert(isLeaf(b) && !isEmpty(b));
+    return node(b).triangle(firstLane(b));
+  }
 
   int leftChild(int b) const {
     constexpr int kMostNodes = std::numeric_limits<int>::max() / 16;
     const int k = heapIndex(b);
+    assert(!isLeaf(b));
     if (k < 8) return 16 * (b / 16) + 2 * k;
     const int child = node(b).child[firstLane(b)];
     if (child >= kMostNodes)
@@ -51,6 +56,7 @@ class BinaryView {
   /// The smallest box around the children, of which there is at least one.
   MovingKdop box(int b) const {
     const MovingKdopNode& n = node(b);
+    assert(firstLane(b) < n.count);
     MovingKdop out = n.box(firstLane(b));
     for (int lane = firstLane(b) + 1; lane < std::min(endLane(b), int{n.count}); ++lane) {
       const MovingKdop other = n.box(lane);

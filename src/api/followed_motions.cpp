@@ -2,6 +2,7 @@
 //
 // The motion classes of this library: checks of what a program gives.
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -40,7 +41,9 @@ Vec requireDirection(const double (&v)[3], const std::string& name) {
   std::frexp(size, &exponent);
   const Vec scaled = {std::ldexp(v[0], -exponent), std::ldexp(v[1], -exponent),
                       std::ldexp(v[2], -exponent)};
-  return (1 / deformable::norm(scaled)) * scaled;
+  const Vec direction = (1 / deformable::norm(scaled)) * scaled;
+  assert(std::abs(deformable::norm(direction) - 1) < 0x1p-49);
+  return direction;
 }
 
 JointTree::Type typeOf(JointKind kind) {
@@ -110,6 +113,7 @@ JointTreePtr withJoint(const JointTreePtr& tree, JointKind kind,
                     "JointChain::kLast");
   auto out = tree ? std::make_shared<JointTree>(*tree) : std::make_shared<JointTree>();
   out->add(typeOf(kind), pose, direction, parent);
+  assert(out->links().size() == static_cast<std::size_t>(num_links) + 1);
   return out;
 }
 

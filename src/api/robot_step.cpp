@@ -2,6 +2,7 @@
 //
 // The boxes of a robot's parts during a step, and the pairs that meet.
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <string>
 #include <tuple>
@@ -42,6 +43,7 @@ class RobotPart {
 namespace {
 
 JointTree::Link linkOf(const JointTree& tree, int link) {
+  assert(link < static_cast<int>(tree.links().size()));
   return link < 0 ? JointTree::Link{-1, {}} : tree.links()[std::size_t(link)];
 }
 
@@ -111,6 +113,12 @@ class RobotStep<S>::Parts {
   Parts(const RobotBodies<S>& bodies, const ChainPathPtr& chain) : bodies_(bodies) {
     paths_.reserve(bodies.parts.size());
     for (const auto& part : bodies.parts) paths_.emplace_back(chain, part->frame);
+    assert(bodies.filters.size() == count());
+    assert(std::all_of(bodies.own_pairs.begin(), bodies.own_pairs.end(),
+                       [this](const auto& pair) {
+                         return 0 <= pair.first && pair.first < pair.second &&
+                                static_cast<std::size_t>(pair.second) < count();
+                       }));
   }
 
   std::size_t count() const { return paths_.size(); }
@@ -137,6 +145,7 @@ class RobotStep<S>::Parts {
       else
         detail::appendBounds(moving(i), list);
     }
+    assert(list.items.size() == count());
   }
 
   void addMet(const BoundsList& bounds, const deformable::BroadPhase& obstacles,
@@ -199,6 +208,7 @@ std::vector<RobotPair> RobotStep<S>::pairs(const ContinuousBroadPhase<S>* obstac
 
 template <typename S>
 MovingGeometry<S> RobotStep<S>::part(int number) const {
+  assert(number >= 0 && std::size_t(number) < parts_->count());
   const DefaultFloatingPoint mode;
   return parts_->moving(std::size_t(number));
 }
