@@ -5,6 +5,7 @@
 #define FCL_BROADPHASE_COLLISION_ROBOT_H
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -259,6 +260,7 @@ int CollisionRobot<S>::attach(int link, const Geometry& geometry,
     filters_.pop_back();
     throw;
   }
+  assert(parts_.size() == read_.size() && parts_.size() == filters_.size());
   return next_part_++;
 }
 
@@ -273,6 +275,7 @@ void CollisionRobot<S>::detach(int part) {
   parts_.erase(place);
   read_.erase(read_.begin() + i);
   filters_.erase(filters_.begin() + i);
+  assert(parts_.size() == read_.size() && parts_.size() == filters_.size());
   const int removed = static_cast<int>(i);
   own_pairs_.erase(std::remove_if(own_pairs_.begin(), own_pairs_.end(),
                                   [removed](const std::pair<int, int>& pair) {
@@ -410,6 +413,7 @@ template <typename S>
 bool CollisionRobot<S>::test(const Step& step, const detail::RobotPair& pair,
                              const Manager* obstacles, Request& request,
                              PairResult& tested) const {
+  assert(pair.part1 >= 0 && static_cast<std::size_t>(pair.part1) < parts_.size());
   const Part& part1 = parts_[static_cast<std::size_t>(pair.part1)];
   tested.part1 = part1.number;
   tested.link1 = part1.link;
@@ -427,6 +431,7 @@ bool CollisionRobot<S>::test(const Step& step, const detail::RobotPair& pair,
     body2 = detail::movingGeometry<S>(tested.object->collisionGeometry().get(),
                                       tested.object->getMotion(), part1.geometry.get());
   } else {
+    assert(pair.part2 >= 0 && static_cast<std::size_t>(pair.part2) < parts_.size());
     const Part& part2 = parts_[static_cast<std::size_t>(pair.part2)];
     tested.part2 = part2.number;
     tested.link2 = part2.link;

@@ -6,6 +6,7 @@
 #define FCL_BROADPHASE_CONTINUOUS_COLLISION_MANAGER_H
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -105,6 +106,7 @@ void takeDistance(ContinuousCollisionObject<S>* o1, ContinuousCollisionObject<S>
     nearest.result = tested;
   }
   nearest.result.distance_lo = lower;
+  assert(!(nearest.result.distance_lo > nearest.result.distance_hi));
 }
 
 /// Whether both are planes or halfspaces. The node type of a mesh may not be asked for:

@@ -5,6 +5,7 @@
 #define FCL_BROADPHASE_DETAIL_PAIR_ANSWERS_H
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -49,6 +50,7 @@ std::vector<Answer> firstAnswer(const std::vector<Pair>& pairs,
   const S range =
       2 * std::max(asked.toc_err, S(0)) + 64 * std::numeric_limits<S>::epsilon();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
+    assert(i == 0 || pairs[i - 1].t_lo <= pairs[i].t_lo);
     if (pairs[i].t_lo > static_cast<double>(request.t_max)) break;
     Answer tested;
     if (!test(pairs[i], request, tested)) continue;
@@ -67,6 +69,8 @@ std::vector<Answer> firstAnswer(const std::vector<Pair>& pairs,
     else if (contact.tested.result.time_of_contact < first.front().result.time_of_contact)
       first.front() = std::move(contact.tested);
   }
+  // The earliest of those that were found is no later than `latest`.
+  assert(first.empty() == found.empty());
   return first;
 }
 

@@ -7,6 +7,7 @@
 #endif
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -136,8 +137,14 @@ class DeformableMesh {
 
   /// @brief The vertices of a free edge, and the vertex of a free point, in the order in
   /// which they were added.
-  const FreeEdge& freeEdge(std::size_t i) const { return free_edges_[i]; }
-  std::size_t freePoint(std::size_t i) const { return free_points_[i]; }
+  const FreeEdge& freeEdge(std::size_t i) const {
+    assert(i < free_edges_.size());
+    return free_edges_[i];
+  }
+  std::size_t freePoint(std::size_t i) const {
+    assert(i < free_points_.size());
+    return free_points_[i];
+  }
 
   /// @brief The number given to setNumThreads(); 1 by default.
   int numThreads() const { return num_threads_; }

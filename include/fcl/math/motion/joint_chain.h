@@ -4,6 +4,7 @@
 #ifndef FCL_MATH_MOTION_JOINT_CHAIN_H
 #define FCL_MATH_MOTION_JOINT_CHAIN_H
 
+#include <cassert>
 #include <cstddef>
 #include <memory>
 #include <utility>
@@ -126,6 +127,7 @@ class JointChain {
     tree_ = detail::withJoint(tree_, kind, detail::placementOf(origin),
                               {axis[0], axis[1], axis[2]},
                               parent == kLast ? link - 1 : parent);
+    assert(numLinks() == link + 1);
     return link;
   }
 

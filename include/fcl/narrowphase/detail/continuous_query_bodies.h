@@ -9,6 +9,7 @@
 // Calls name their namespace. Without it the compiler also looks in the namespaces of the
 // arguments: a function of the same name in Eigen's would make the call ambiguous.
 
+#include <cassert>
 #include <memory>
 #include <string>
 
@@ -59,6 +60,7 @@ PoseNumbers<S> endPose(const MovingGeometry<S>& o) {
 template <typename S>
 void fillResult(const QueryOutcome<S>& outcome, const MovingGeometry<S>& o1,
                 const MovingGeometry<S>& o2, ContinuousCollisionResult<S>& result) {
+  assert(!(outcome.toc_lo > outcome.toc_hi) && !(outcome.toc_hi > outcome.pose_time));
   result.is_collide = outcome.is_collide;
   result.time_of_contact = outcome.toc_lo;
   if (!outcome.is_collide) {

@@ -5,6 +5,7 @@
 #ifndef FCL_MATH_MOTION_DETAIL_FOLLOWED_MOTION_H
 #define FCL_MATH_MOTION_DETAIL_FOLLOWED_MOTION_H
 
+#include <cassert>
 #include <memory>
 #include <utility>
 
@@ -76,7 +77,9 @@ class FollowedMotion : public MotionBase<S>, public BoundedMotion {
 
  protected:
   explicit FollowedMotion(std::shared_ptr<const BoundedMotion> motion)
-      : motion_(std::move(motion)) {}
+      : motion_(std::move(motion)) {
+    assert(motion_);
+  }
 
  private:
   static constexpr const char* kNoBound =
