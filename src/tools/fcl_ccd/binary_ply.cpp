@@ -2,6 +2,7 @@
 #include "binary_ply.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -230,6 +231,7 @@ double loadPlyValue(const char* at, PlyType type, bool big_endian) {
 
 Vertices decodeVertices(std::string_view file, const PlyVertexBlock& block) {
   Vertices vertices(block.count);
+  assert(block.end() <= file.size());
   const char* const at = file.data() + block.begin;
   if (block.big_endian != hostIsBigEndian())
     decode<true>(at, block, vertices);

@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_CSV_COLUMNS_H
 #define FCL_CCD_CSV_COLUMNS_H
 
+#include <cassert>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -48,7 +49,9 @@ std::string csvHead(const CsvColumn<Row> (&columns)[n], const ColumnNumbers& cho
 template <typename Row, std::size_t n>
 void appendCsvLine(const CsvColumn<Row> (&columns)[n], const ColumnNumbers& chosen,
                    const Row& row, std::string& lines) {
+  assert(!chosen.empty());
   for (const std::size_t i : chosen) {
+    assert(i < n);
     columns[i].append(row, lines);
     lines += ',';
   }

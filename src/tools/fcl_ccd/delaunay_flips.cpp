@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 
@@ -107,6 +108,7 @@ class Flips {
   /// Returns the four sides around both triangles.
   std::array<std::size_t, 4> flip(std::size_t side) {
     const std::size_t other = across_[side];
+    assert(across_[other] == side && from(other) == from(nextSide(side)));
     const auto [a, b, c, d] = cornersAt(side);
     const std::size_t bc = across_[nextSide(side)],
                       ca = across_[nextSide(nextSide(side))];

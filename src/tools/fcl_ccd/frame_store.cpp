@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame_store.h"
 
+#include <cassert>
 #include <exception>
 #include <utility>
 
@@ -32,6 +33,7 @@ FrameStore::Frame FrameStore::get(std::size_t frame) {
       is_ours = true;
     }
     future = at->second.frame;
+    assert(at->second.uses_left > 0);
     if (--at->second.uses_left == 0) entries_.erase(at);
   }
   if (is_ours) {

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cassert>
 #include <cerrno>
 #include <stdexcept>
 
@@ -44,6 +45,7 @@ GrowingFile::~GrowingFile() {
 }
 
 void GrowingFile::append(std::string_view bytes) {
+  assert(file_ >= 0 && committed_ <= size_);
   while (!bytes.empty()) {
     const ssize_t written = write(file_, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;

@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_IN_ORDER_H
 #define FCL_CCD_IN_ORDER_H
 
+#include <cassert>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -113,6 +114,7 @@ class InOrder {
                     [&] { return next_ >= end_ || next_ < taken_ + 2 * num_workers_; });
       if (next_ >= end_) return;
       const std::size_t i = next_++;
+      assert(taken_ <= i && i < taken_ + 2 * num_workers_);
       lock.unlock();
       Outcome outcome;
       try {
@@ -122,6 +124,7 @@ class InOrder {
       }
       lock.lock();
       results_.emplace(i, std::move(outcome));
+      assert(results_.size() <= 2 * num_workers_);
       changed_.notify_all();
     }
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh_io.h"
 
+#include <algorithm>
+#include <cassert>
 #include <cctype>
 #include <cstring>
 #include <limits>
@@ -33,6 +35,20 @@ PolygonMesh parse(const std::string& extension, std::string_view bytes) {
   return parsePly(bytes);
 }
 
+#ifndef NDEBUG
+bool areIdsInRange(const PolygonMesh& mesh) {
+  const auto isInRange = [&mesh](int id) {
+    return id >= 0 && static_cast<std::size_t>(id) < mesh.vertices.size();
+  };
+  const std::vector<int>&corners = mesh.faces.corners, &points = mesh.free.points;
+  return std::all_of(corners.begin(), corners.end(), isInRange) &&
+         std::all_of(points.begin(), points.end(), isInRange) &&
+         std::all_of(
+             mesh.free.edges.begin(), mesh.free.edges.end(),
+             [&](const auto& edge) { return isInRange(edge[0]) && isInRange(edge[1]); });
+}
+#endif
+
 PolygonMesh parseWhole(const std::string& extension, std::string_view bytes) {
   PolygonMesh mesh = parse(extension, bytes);
   if (mesh.faces.size() == 0 && mesh.free.empty())
@@ -41,6 +57,7 @@ PolygonMesh parseWhole(const std::string& extension, std::string_view bytes) {
         "OBJ "
         "file");
   requireFinite(mesh.vertices);
+  assert(areIdsInRange(mesh));
   // A polygon has fewer triangles than corners.
   requireFewEnough(mesh.faces.corners.size(), "corners of faces");
   requireFewEnough(mesh.free.edges.size(), "lines");
@@ -85,11 +102,13 @@ void appendLittleEndian(double value, std::string& out) {
 }  // namespace
 
 bool Faces::endFace() {
+  assert(last_end_ <= corners.size());
   const std::size_t size = corners.size() - last_end_;
   if (size != 3 && ends.empty())
     for (std::size_t end = 3; end <= last_end_; end += 3) ends.push_back(end);
   last_end_ = corners.size();
   if (size != 3 || !ends.empty()) ends.push_back(last_end_);
+  assert(ends.empty() ? corners.size() % 3 == 0 : ends.back() == corners.size());
   return size >= 3;
 }
 

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cassert>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -135,6 +136,7 @@ bool areFirstOf(const List& list, const List& others, bool is_cut) {
 }  // namespace
 
 MeshSequence::MeshSequence(std::vector<std::string> paths) : paths_(std::move(paths)) {
+  assert(!paths_.empty());
   const std::string& path = paths_[0];
   // Another extension is refused before the file is opened.
   const std::string bytes =
@@ -160,6 +162,7 @@ bool MeshSequence::hasFastLayout(const std::string& path) const {
 }
 
 Vertices MeshSequence::read(std::size_t frame) const {
+  assert(frame < paths_.size());
   if (frame == 0) return vertices_;
   if (auto kept = takeKept(frame)) return std::move(*kept);
   const std::string& path = paths_[frame];
@@ -222,6 +225,7 @@ std::optional<Vertices> MeshSequence::takeKept(std::size_t frame) const {
   const auto at = kept_->frames.find(frame);
   if (at == kept_->frames.end()) return std::nullopt;
   Vertices vertices = std::move(at->second);
+  assert(kept_->bytes >= vertices.size() * sizeof vertices[0]);
   kept_->bytes -= vertices.size() * sizeof vertices[0];
   kept_->frames.erase(at);
   return vertices;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cassert>
+
 #include "moment.h"
 
 #include "contact_text.h"
@@ -16,6 +18,7 @@ void append(const Triangles& triangles, const FreeElements* free, int offset,
 }
 
 void append(const Vertices& from, const Vertices& to, double time, Vertices& whole) {
+  assert(from.size() == to.size());
   for (std::size_t v = 0; v < from.size(); ++v) {
     auto& p = whole.emplace_back();
     for (std::size_t k = 0; k < 3; ++k)
@@ -49,6 +52,7 @@ std::optional<std::size_t> triangleInScene(const SceneContact& contact,
                                            const SceneTriangles& triangles) {
   if (contact.triangle_kinds[feature] != fcl::PrimitiveKind::kTriangle)
     return std::nullopt;
+  assert(contact.triangles[feature] >= 0);
   return static_cast<std::size_t>(contact.triangles[feature]) +
          (isOfB(contact, feature) ? triangles.a->size() : 0);
 }

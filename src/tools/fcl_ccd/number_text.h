@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_NUMBER_TEXT_H
 #define FCL_CCD_NUMBER_TEXT_H
 
+#include <cassert>
 #include <charconv>
 #include <string>
 
@@ -13,6 +14,7 @@ inline std::string numberText(double value, int digits = 17) {
   // The same text as printf's %.*g, but several times as fast.
   const auto end =
       std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits);
+  assert(end.ec == std::errc());
   return {text, end.ptr};
 }
 

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
@@ -93,8 +94,10 @@ void OutputSet::requireNotTaken(const std::vector<std::string>& outputs) const {
 }
 
 const OutputLock& OutputSet::lockOf(const std::string& path) const {
-  return **std::find_if(locks_.begin(), locks_.end(),
-                        [&](const auto& lock) { return lock->path() == path; });
+  const auto found = std::find_if(locks_.begin(), locks_.end(),
+                                  [&](const auto& lock) { return lock->path() == path; });
+  assert(found != locks_.end());
+  return **found;
 }
 
 bool OutputSet::hasStandardOutput() const {

@@ -4,7 +4,9 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <stdexcept>
 
@@ -38,6 +40,7 @@ std::int32_t ViewGrid::nodeOf(double x, std::size_t axis) const {
 
 void appendNumbers(const std::vector<std::int64_t>& numbers, std::string& bytes) {
   for (const std::int64_t number : numbers) {
+    assert(std::abs(number) < std::int64_t{1} << 31);
     // 0, -1, 1, -2, ... become 0, 1, 2, 3, ...; seven bits a byte, the lowest first.
     auto rest = (static_cast<std::uint64_t>(number) << 1) ^
                 static_cast<std::uint64_t>(number < 0 ? -1 : 0);
@@ -49,6 +52,7 @@ void appendNumbers(const std::vector<std::int64_t>& numbers, std::string& bytes)
 
 void appendMotion(const ViewGrid& grid, const Vertices* before, const Vertices& after,
                   std::string& bytes) {
+  assert(before == nullptr || before->size() == after.size());
   std::vector<std::int64_t> differences;
   differences.reserve(3 * after.size());
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -91,6 +95,7 @@ std::string base64(std::string_view bytes) {
     for (std::size_t k = 0; k < 4; ++k)
       text += k <= count ? kDigits[group >> (18 - 6 * k) & 63u] : '=';
   }
+  assert(text.size() == (bytes.size() + 2) / 3 * 4);
   return text;
 }
 

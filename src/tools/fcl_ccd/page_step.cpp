@@ -2,6 +2,7 @@
 #include "page_step.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "contact_text.h"
@@ -25,9 +26,11 @@ std::string timesOfTriangles(const StepResult& result, const SceneTriangles& tri
   // The earliest last: its time stays.
   for (auto c = result.contacts.rbegin(); c != result.contacts.rend(); ++c)
     for (const std::size_t feature : {0u, 1u})
-      if (const auto f = triangleInScene(*c, feature, triangles))
+      if (const auto f = triangleInScene(*c, feature, triangles)) {
+        assert(*f < times.size() && 0 <= c->toc_lo && c->toc_lo <= 1);
         times[*f] = static_cast<char>(
             static_cast<unsigned char>(1 + std::floor(kLatest * c->toc_lo)));
+      }
   return times;
 }
 

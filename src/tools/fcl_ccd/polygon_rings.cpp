@@ -2,6 +2,7 @@
 #include "polygon_rings.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "elementary/predicates.h"
@@ -51,6 +52,7 @@ int PolygonRings::turn(int a, int b, int c) const {
 
 void PolygonRings::remove(int corner) {
   const int a = before(corner), b = next(corner);
+  assert(next(a) == corner && before(b) == corner);
   next_[static_cast<std::size_t>(a)] = b;
   before_[static_cast<std::size_t>(b)] = a;
   next_[static_cast<std::size_t>(corner)] = -1;

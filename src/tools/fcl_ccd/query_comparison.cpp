@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -99,6 +100,7 @@ class QueryComparison : public Comparison {
  private:
   ComparisonRow report(const QuerySet& set, const TimedResults& timed) const {
     const QueryErrors errors = compareWithTruth(set, timed.results);
+    assert(errors.false_negatives <= errors.num_true);
     const std::size_t contacts =
         errors.num_true - errors.false_negatives + errors.false_positives;
     const std::optional<double> time_error = largestTimeError(set, timed.results);

@@ -2,6 +2,7 @@
 #include "query_csv.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cctype>
 #include <stdexcept>
 #include <string_view>
@@ -136,6 +137,7 @@ void parseCoordinate(const RowForm& form, const Fields& fields, std::size_t k, R
 }
 
 Row parseRow(const RowForm& form, const Fields& fields) {
+  assert(fields.size() == form.num_fields);
   Row row;
   for (std::size_t k = 0; k < 3; ++k) parseCoordinate(form, fields, k, row);
   if (!form.hasTruth()) return row;

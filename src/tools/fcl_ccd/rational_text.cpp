@@ -2,6 +2,7 @@
 #include "rational_text.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -39,6 +40,7 @@ struct ScaledQuotient {
 };
 
 ScaledQuotient divide(const cpp_int& numerator, const cpp_int& denominator) {
+  assert(numerator > 0 && denominator > 0);
   const int bits = static_cast<int>(msb(numerator)) - static_cast<int>(msb(denominator));
   const int exponent = bits - 56;  // the quotient has 56 or 57 bits before the sticky one
   cpp_int dividend = numerator, divisor = denominator, rest;
@@ -49,6 +51,7 @@ ScaledQuotient divide(const cpp_int& numerator, const cpp_int& denominator) {
   ScaledQuotient quotient{0, exponent - 1, true};
   divide_qr(dividend, divisor, quotient.mantissa, rest);
   quotient.mantissa <<= 1;
+  assert(msb(quotient.mantissa) + 1 >= 55);
   quotient.exact = rest == 0;
   if (!quotient.exact) quotient.mantissa |= 1;
   return quotient;
@@ -70,6 +73,7 @@ NearestDouble round(const ScaledQuotient& quotient) {
     exact = exact && rest == 0;
   }
   // kept has at most 53 bits, or is 2^53: the conversion and the scaling are exact.
+  assert(kept <= cpp_int(1) << kDigits);
   const double value =
       std::ldexp(kept.convert_to<double>(), quotient.exponent + std::max(drop, 0));
   return {value, exact};

@@ -2,6 +2,7 @@
 #include "resume.h"
 
 #include <algorithm>
+#include <cassert>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -176,7 +177,9 @@ ResumePoint findResumePoint(const GrowingOutputs& outputs, std::size_t latest) {
   point.contacts_size = contacts.beginOf(point.step);
   if (!contacts.steps.empty() && contacts.steps.begin()->first < point.step)
     point.first_contact = contacts.steps.begin()->first;
+  assert(point.contacts_size <= contacts.end);
   if (steps.empty()) return point;
+  assert(point.step <= steps.size());
   point.steps_size = steps[point.step - 1].end;
   for (std::size_t i = 0; i < point.step; ++i) {
     point.summary.add(steps[i].summary);

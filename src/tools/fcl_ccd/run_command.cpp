@@ -2,6 +2,7 @@
 #include "run_command.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdio>
 #include <exception>
@@ -202,6 +203,7 @@ class Run {
       progress_.clear();
       if (options_.follow) requireNoFrameIsShown(record);
       outputs_.add(record);
+      assert(step == num_done_);
       num_done_ = step + 1;
       outputs_.printRow(record);
       progress_.step(num_done_, outputs_.summary().contacts());

@@ -2,6 +2,7 @@
 #include "run_report.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstdio>
 #include <utility>
 
@@ -46,6 +47,8 @@ std::size_t asEarlyAs(const SceneContact& earliest, const StepResult& result) {
   const auto overlaps = std::count_if(
       result.contacts.begin(), result.contacts.end(),
       [&](const SceneContact& other) { return other.toc_lo <= earliest.toc_hi; });
+  // It is one of them.
+  assert(overlaps > 0);
   return static_cast<std::size_t>(overlaps) - 1;
 }
 
@@ -202,6 +205,7 @@ RunSummary summaryOf(const Json& step_line) {
 }
 
 void RunSummary::add(const RunSummary& step) {
+  assert(!first || !step.first || first->step < step.first->step);
   steps += step.steps;
   vf += step.vf;
   ee += step.ee;

@@ -2,6 +2,7 @@
 #include "scene.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <limits>
 #include <stdexcept>
@@ -113,6 +114,7 @@ void setTriangle(std::intptr_t b, std::intptr_t num_triangles,
                  Pair& out) {
   out.triangles[feature] = b;
   if (b < num_triangles) return;
+  assert(static_cast<std::size_t>(b - num_triangles) < free.size());
   const fcl::Primitive& primitive = free[static_cast<std::size_t>(b - num_triangles)];
   out.triangles[feature] = static_cast<std::intptr_t>(primitive.index);
   out.triangle_kinds[feature] = primitive.kind;
@@ -130,6 +132,7 @@ void setTriangles(const From& pair, const Body& o1, const Body& o2, To& out) {
 template <typename From, typename To>
 void setVertices(const From& pair, bool o1_is_b, bool o2_is_b, To& out) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(out.num_vertices); ++i) {
+    assert(pair.vertices[i] >= 0);
     const bool of_first_feature = i < firstFeatureSize(pair.kind);
     const bool of_o1 = of_first_feature == pair.first_on_o1;
     out.vertices[i] = {pair.vertices[i], of_o1 ? o1_is_b : o2_is_b};
@@ -187,6 +190,9 @@ void sortContacts(std::vector<SceneContact>& contacts) {
 /// Keeps the contacts of first-contact queries that may be the first one of all. Nothing
 /// is before a crossing.
 void keepFirst(std::vector<SceneContact>& contacts) {
+  assert(
+      std::is_sorted(contacts.begin(), contacts.end(),
+                     [](const auto& a, const auto& b) { return a.toc_lo < b.toc_lo; }));
   double first_hi = std::numeric_limits<double>::infinity();
   for (const SceneContact& c : contacts) first_hi = std::min(first_hi, c.toc_hi);
   const auto later = std::find_if(contacts.begin(), contacts.end(),

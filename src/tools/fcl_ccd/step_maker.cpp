@@ -2,6 +2,7 @@
 #include "step_maker.h"
 
 #include <algorithm>
+#include <cassert>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -57,6 +58,7 @@ void StepMaker::setShare(const StepShare& share) {
 StepRecord StepMaker::make(std::size_t i, std::size_t worker) {
   announce(i);
   const std::size_t step = share_[i];
+  assert(worker < scenes_.size() && share_.has(step));
   const FrameStore::Pair a = frames_a_.take(step);
   FrameStore::Pair b;
   if (frames_b_) b = frames_b_->take(step);

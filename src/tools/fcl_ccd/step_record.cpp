@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "step_record.h"
 
+#include <cassert>
 #include <cstring>
 
 #include "json.h"
@@ -79,6 +80,7 @@ std::string toBytes(const StepOutcome& outcome) {
   bytes += packed_head;
   if (outcome.record)
     for (const auto text : kTexts) bytes += *outcome.record.*text;
+  assert(bytes.size() == sizeof head_size + head_size + size);
   return bytes;
 }
 
@@ -86,6 +88,7 @@ StepOutcome outcomeOf(const std::string& bytes) {
   std::size_t head_size = 0;
   std::memcpy(&head_size, bytes.data(), sizeof head_size);
   std::size_t at = sizeof head_size + head_size;
+  assert(at <= bytes.size());
   const Json head = Json::from_cbor(bytes.data() + sizeof head_size, bytes.data() + at);
   StepOutcome outcome;
   head.at(0).get_to(outcome.end_code);
@@ -100,6 +103,7 @@ StepOutcome outcomeOf(const std::string& bytes) {
     record.*text = bytes.substr(at, size);
     at += size;
   }
+  assert(at == bytes.size());
   return outcome;
 }
 

@@ -3,6 +3,7 @@
 #define FCL_CCD_STEP_SHARE_H
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 
 namespace fcl_ccd {
@@ -20,6 +21,7 @@ struct StepShare {
   std::size_t num_ranks{1};
 
   std::size_t rankOf(std::size_t step) const {
+    assert(step >= first && rank < num_ranks);
     return (step - first) / kBlock % num_ranks;
   }
   bool has(std::size_t step) const {

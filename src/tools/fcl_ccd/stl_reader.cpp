@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <cstring>
 #include <numeric>
@@ -71,6 +72,7 @@ void requireWholeBinary(std::string_view file) {
 
 Vertices parseBinary(std::string_view file) {
   requireWholeBinary(file);
+  assert(kBodyBegin + kFacetSize * numFacets(file) <= file.size());
   Vertices vertices(3 * numFacets(file));
   const char* at = file.data() + kBodyBegin + kNormalSize;
   for (std::size_t i = 0; i < vertices.size(); i += 3, at += kFacetSize)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <deque>
 #include <set>
@@ -226,7 +227,10 @@ class Sweep {
     strip.hi = strip.last = added;
   }
 
-  Link& link(int i) { return links_[static_cast<std::size_t>(i)]; }
+  Link& link(int i) {
+    assert(i >= 0 && static_cast<std::size_t>(i) < links_.size());
+    return links_[static_cast<std::size_t>(i)];
+  }
   int addLink(int corner) {
     links_.push_back({corner, -1, -1});
     return static_cast<int>(links_.size()) - 1;

@@ -3,6 +3,7 @@
 #define FCL_CCD_TEXT_CURSOR_H
 
 #include <array>
+#include <cassert>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -50,6 +51,7 @@ class TextCursor {
   /// @brief The number of the current line, from 1 on.
   std::size_t lineNo() const { return lineNo(offset()); }
   std::size_t lineNo(std::size_t offset) const {
+    assert(offset <= static_cast<std::size_t>(end_ - begin_));
     std::size_t line_no = 1;
     for (const char* c = begin_; c != begin_ + offset; ++c)
       if (*c == '\n' || (*c == '\r' && (c + 1 == end_ || c[1] != '\n'))) ++line_no;

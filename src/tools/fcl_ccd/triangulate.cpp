@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "triangulate.h"
 
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -142,6 +143,7 @@ class Ring {
   }
 
   void cut(std::size_t i, Triangles& out) {
+    assert(i < size() && size() > 3);
     out.push_back(
         {corners_[(i + size() - 1) % size()], corners_[i], corners_[(i + 1) % size()]});
     num_tests_ += size() / 64;  // moving 64 corners takes the time of a test or less
@@ -174,6 +176,7 @@ void addPolygon(const Vertices& vertices, const std::vector<int>& corners,
       addSweptTriangles(vertices, corners, static_cast<int>(view.axis), view.turns_left,
                         out))
     return;
+  [[maybe_unused]] const std::size_t before = out.size();
   Ring ring(corners, std::move(points));
   std::size_t i = 0;
   for (const double straight : kStraightOfEars) {
@@ -185,6 +188,7 @@ void addPolygon(const Vertices& vertices, const std::vector<int>& corners,
     }
   }
   addFan(ring.corners(), out);
+  assert(out.size() == before + corners.size() - 2);
 }
 
 }  // namespace
@@ -193,6 +197,7 @@ Triangles triangulate(const Vertices& vertices, const Faces& faces) {
   Triangles triangles;
   triangles.reserve(faces.corners.size() / 3);
   if (faces.ends.empty()) {
+    assert(faces.corners.size() % 3 == 0);
     for (std::size_t i = 0; i < faces.corners.size(); i += 3)
       triangles.push_back({faces.corners[i], faces.corners[i + 1], faces.corners[i + 2]});
     return triangles;
@@ -200,6 +205,7 @@ Triangles triangulate(const Vertices& vertices, const Faces& faces) {
   std::vector<int> corners;
   std::size_t begin = 0;
   for (const std::size_t end : faces.ends) {
+    assert(begin + 3 <= end && end <= faces.corners.size());
     corners.assign(faces.corners.begin() + static_cast<std::ptrdiff_t>(begin),
                    faces.corners.begin() + static_cast<std::ptrdiff_t>(end));
     if (corners.size() == 3)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "weld.h"
 
+#include <cassert>
 #include <cstddef>
 
 #include "mesh/vertex_weld.h"
@@ -22,7 +23,10 @@ bool isSoup(const Vertices& vertices, const Triangles& triangles) {
 
 void joinVertices(const std::vector<int>& map, Triangles& triangles) {
   for (auto& triangle : triangles)
-    for (int& id : triangle) id = map[static_cast<std::size_t>(id)];
+    for (int& id : triangle) {
+      assert(static_cast<std::size_t>(id) < map.size());
+      id = map[static_cast<std::size_t>(id)];
+    }
 }
 
 void joinVertices(const std::vector<int>& map, FreeElements& free) {

@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_PICTURES_IMAGE_H
 #define FCL_CCD_PICTURES_IMAGE_H
 
+#include <cassert>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -28,6 +29,7 @@ struct Image {
 
  private:
   std::size_t index(int x, int y) const {
+    assert(0 <= x && x < width && 0 <= y && y < height);
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
            static_cast<std::size_t>(x);
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -343,6 +344,7 @@ class Renderer {
 
 Image render(const PaintedMesh& scene, const std::vector<Marker>& markers,
              const Camera& camera, const RenderOptions& options) {
+  assert(scene.paints.size() == scene.mesh.triangles.size());
   return Renderer(scene, camera, options).run(markers);
 }
 
