@@ -346,7 +346,8 @@ class ChordContacts {
     };
     for (std::size_t i = first; i < last; ++i) {
       const FeatureContact& pair = span.near.contacts[i];
-      if (in_contact_.find(pair)) continue;
+      // Spans list by time, up to a rounding after t_max.
+      if (firstOf(pair, span) > options_.t_max || in_contact_.find(pair)) continue;
       if (turning)
         addTurning(pair, span, *turning, take);
       else if (addAlone(pair, span, alone))

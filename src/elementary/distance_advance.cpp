@@ -576,6 +576,30 @@ double placeOnFirstEdge(const NearestPoint& near) {
   }
 }
 
+/// The middle of the nearest points at t and the direction between them.
+/// @param pair  of the ordered points times the scale
+void describeApproach(ContinuousContactKind kind, const OrderedPair& ordered,
+                      AdvancingPair& pair, double scale, double t, double (&position)[3],
+                      double (&normal)[3]) {
+  const NearestPoint near = pair.nearestAt(t);
+  const double s = kind == ContinuousContactKind::kEdgeEdge ? placeOnFirstEdge(near) : 0;
+  assert(0 <= s && s <= 1);
+  const double way[3] = {near.point.x, near.point.y, near.point.z};
+  const auto at = [&](int i, int k) {
+    return (1 - t) * ordered.x[i].t0[k] + t * ordered.x[i].t1[k];
+  };
+  for (int k = 0; k < 3; ++k) {
+    const double on_first = s > 0 ? (1 - s) * at(0, k) + s * at(1, k) : at(0, k);
+    position[k] = on_first + 0.5 * (way[k] / scale);
+  }
+  Vec n = near.distance > 0 ? pair.direction(near, 1) : Vec{0, 0, 0};
+  const int num_first = kind == ContinuousContactKind::kEdgeEdge ? 2 : 1;
+  if (ordered.number[0] >= num_first) n = -1. * n;
+  normal[0] = n.x;
+  normal[1] = n.y;
+  normal[2] = n.z;
+}
+
 }  // namespace
 
 DistanceContact advanceToApproach(ContinuousContactKind kind, const FeaturePoints& x,
@@ -597,24 +621,14 @@ DistanceContact advanceToDistance(ContinuousContactKind kind, const FeaturePoint
 void distanceGeometry(ContinuousContactKind kind, const FeaturePoints& x, double t,
                       double (&position)[3], double (&normal)[3]) {
   const OrderedPair ordered(kind, x, {});
-  AdvancingPair pair(kind, ordered.x);
-  const NearestPoint near = pair.nearestAt(t);
-  const double s = kind == ContinuousContactKind::kEdgeEdge ? placeOnFirstEdge(near) : 0;
-  assert(0 <= s && s <= 1);
-  const double way[3] = {near.point.x, near.point.y, near.point.z};
-  const auto at = [&](int i, int k) {
-    return (1 - t) * ordered.x[i].t0[k] + t * ordered.x[i].t1[k];
-  };
-  for (int k = 0; k < 3; ++k) {
-    const double on_first = s > 0 ? (1 - s) * at(0, k) + s * at(1, k) : at(0, k);
-    position[k] = on_first + 0.5 * way[k];
+  AdvancingPair plain(kind, ordered.x);
+  if (plain.size() >= Advance::kLeastSize && plain.size() <= Advance::kMostSize) {
+    describeApproach(kind, ordered, plain, 1, t, position, normal);
+    return;
   }
-  Vec n = near.distance > 0 ? pair.direction(near, 1) : Vec{0, 0, 0};
-  const int num_first = kind == ContinuousContactKind::kEdgeEdge ? 2 : 1;
-  if (ordered.number[0] >= num_first) n = -1. * n;
-  normal[0] = n.x;
-  normal[1] = n.y;
-  normal[2] = n.z;
+  const ScaledPoints scaled(kind, ordered.x, 0);
+  AdvancingPair pair(kind, scaled.points());
+  describeApproach(kind, ordered, pair, scaled.scale(), t, position, normal);
 }
 
 }  // namespace deformable

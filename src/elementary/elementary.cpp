@@ -443,7 +443,9 @@ void contactGeometry(ContinuousContactKind kind, const FeaturePoints& x, double 
     }
   std::copy(position_1, position_1 + 3, position);
 
-  const double length = std::sqrt(area);
+  // The square of a short normal may be subnormal, and so rounded.
+  n = scaleOf(n) * n;
+  const double length = std::sqrt(dot(n, n));
   if (!(length > 0) || !std::isfinite(length)) {
     std::fill(normal, normal + 3, 0.);
     return;

@@ -13,8 +13,8 @@ namespace deformable {
 /// range of doubles.
 ///
 /// If the size is not finite, the coordinates are near the largest number. If it is tiny,
-/// so are the coordinates, since differences of doubles are multiples of their units.
-/// What underflows is below 2^-850 of the size.
+/// so are the coordinates, since differences of doubles are multiples of their units;
+/// or else all points coincide at rest. What underflows is below 2^-850 of the size.
 class ScaledPoints {
  public:
   /// @param distance  another length that counts

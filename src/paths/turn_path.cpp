@@ -296,7 +296,9 @@ PoseRate MotionPath::turnAccelerationAt(double t) const {
 // p'' = w^2 (cos (D x + Q) - sin (C x + P)). The two vectors are perpendicular and have
 // the same length, up to a rounding of at most 16 u (|x| + |P| + |Q|), and of a frame on
 // the body by what more_rounding_ has for it. This adds no more than twice as much to the
-// length of the result.
+// length of the result. That P and Q also round by 2 u of the reference point is part of
+// positionError(): over a step it moves no point by more than w^2 / 2 times this, which
+// is below 10 u of it.
 AccelerationBound MotionPath::turnAcceleration() const {
   AccelerationBound bound{};
   if (turn_.angle == 0) {

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "prepare/convex_shapes.h"
 
+#include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "elementary/least_length.h"
 #include "fcl/common/exception.h"
 #include "fcl/geometry/shape/box.h"
 #include "fcl/geometry/shape/capsule.h"
@@ -17,6 +20,7 @@
 #include "fcl/geometry/shape/plane.h"
 #include "fcl/geometry/shape/sphere.h"
 #include "fcl/geometry/shape/triangle_p.h"
+#include "numerics/moving_vector.h"
 
 namespace fcl {
 namespace detail {
@@ -100,9 +104,16 @@ ConvexShape shapeOf(const TriangleP<S>& triangle, const std::string& name, doubl
 template <typename Flat>
 ConvexShape flatShape(const Flat& flat, bool is_solid, const std::string& name,
                       double other_radius) {
-  const Vec normal = {static_cast<double>(flat.n[0]), static_cast<double>(flat.n[1]),
-                      static_cast<double>(flat.n[2])};
-  const auto offset = static_cast<double>(flat.d);
+  Vec normal = {static_cast<double>(flat.n[0]), static_cast<double>(flat.n[1]),
+                static_cast<double>(flat.n[2])};
+  auto offset = static_cast<double>(flat.d);
+  // Where the square of the normal would leave the range of numbers.
+  const double size = maxNorm(normal);
+  if ((size > 0 && size < kLeastLength) || (size > 1 / kLeastLength && size <= DBL_MAX)) {
+    const double scale = std::ldexp(1, std::min(1000, -std::ilogb(size)));
+    normal = scale * normal;
+    offset *= scale;
+  }
   const double length = std::sqrt(dot(normal, normal));
   if (!(length > 0) || !std::isfinite(length) || !std::isfinite(offset))
     throw Exception(name + ": the normal of the " + (is_solid ? "halfspace" : "plane") +

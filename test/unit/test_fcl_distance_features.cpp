@@ -294,6 +294,23 @@ TEST(FCL_DISTANCE_FEATURES, middleAndDirection) {
   }
 }
 
+TEST(FCL_DISTANCE_FEATURES, middleAndDirectionOfAllSizes) {
+  for (int exponent = -1000; exponent <= 1000; exponent += 20) {
+    const double size = std::ldexp(1, exponent);
+    MovingPair pair = onTriangle(falling(1, 1, 1, -1));
+    for (auto& vertex : pair.x)
+      for (int k = 0; k < 3; ++k) {
+        vertex.t0[k] *= size;
+        vertex.t1[k] *= size;
+      }
+    double position[3], normal[3];
+    detail::deformable::distanceGeometry(pair.kind, pair.points(), 0.25, position,
+                                         normal);
+    EXPECT_EQ(V(position), V(size, size, 0.25 * size)) << exponent;
+    EXPECT_EQ(V(normal), V(0, 0, -1)) << exponent;
+  }
+}
+
 TEST(FCL_DISTANCE_FEATURES, unusableDistanceIsRefused) {
   const V p(1, 2, 3), q(4, 5, 6);
   for (const double d : {-1., std::numeric_limits<double>::infinity(),

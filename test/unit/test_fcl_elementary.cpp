@@ -773,6 +773,16 @@ TEST(FCL_ELEMENTARY_TEST, geometryOfAllSizes) {
   }
 }
 
+// Two nearly parallel edges: the square of their product is a subnormal number.
+TEST(FCL_ELEMENTARY_TEST, normalOfAShortProduct) {
+  for (int exponent = -500; exponent >= -560; exponent -= 5) {
+    const double turn = std::ldexp(1, exponent);
+    MovingPair pair = fallingEdge(1, {0, 0}, {1, turn}, 1);
+    const Geometry found(pair, 1);
+    EXPECT_NEAR(Vector3<double>(found.normal).norm(), 1, 1e-15) << exponent;
+  }
+}
+
 // Edges that lie along each other touch where both are.
 TEST(FCL_ELEMENTARY_TEST, geometryOfParallelEdges) {
   constexpr double kRounding = 1e-14;  // of weights, times the longer edge

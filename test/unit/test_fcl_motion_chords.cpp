@@ -223,6 +223,28 @@ TEST(FCL_MOTION_CHORDS, contactsOfLargeTurns) {
   EXPECT_GT(num_other_way, kScenes - 3);
 }
 
+/// Just before and after a contact. Chords list pairs by time, up to a rounding.
+TEST(FCL_MOTION_CHORDS, noContactBeginsAfterTheLastTime) {
+  Random random(88);
+  int num_asked = 0;
+  for (int i = 0; i < 12; ++i) {
+    const Scene scene = randomScene(random, i);
+    Request request;
+    request.query = ContinuousQuery::kAll;
+    request.num_max_contacts = static_cast<std::size_t>(-1);
+    if (i % 2 == 1) request.min_distance = 0.02;
+    const Result all = ask(scene, request);
+    for (std::size_t k = 0; k < all.contacts.size(); k += 1 + all.contacts.size() / 4) {
+      if (all.contacts[k].toc_lo == 0) continue;
+      request.t_max = all.contacts[k].toc_lo * (1 - std::ldexp(1, -42));
+      for (const auto& contact : ask(scene, request).contacts)
+        EXPECT_LE(contact.toc_lo, request.t_max) << i << ", " << k;
+      ++num_asked;
+    }
+  }
+  EXPECT_GT(num_asked, 20);
+}
+
 /// The earliest ones are kept, and the answer does not depend on the number of threads.
 TEST(FCL_MOTION_CHORDS, fewerContactsAndMoreThreads) {
   Random random(12);

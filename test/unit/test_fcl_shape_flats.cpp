@@ -254,6 +254,25 @@ INSTANTIATE_TEST_SUITE_P(, MeshAndFlat, testing::Values("plane", "halfspace"),
                            return info.param;
                          });
 
+/// FCL's constructors make the normal a unit vector; a program that writes it may not.
+TEST(FCL_SHAPE_FLATS, normalsOfAllLengths) {
+  const auto ball = std::make_shared<Sphere<double>>(0.5);
+  Pose begin = Pose::Identity(), end = Pose::Identity();
+  begin.translation()[0] = 4;
+  const Pose still = Pose::Identity();
+  for (int exponent = -1060; exponent <= 1020; exponent += 20) {
+    Halfspace<double> half(Point::UnitX(), 1);
+    const double size = std::ldexp(1, exponent);
+    half.n *= size;
+    half.d *= size;
+    Request request = requestOf(ContinuousQuery::kFirst);
+    Result result;
+    continuousCollide(ball.get(), begin, end, &half, still, still, request, result);
+    ASSERT_TRUE(result.is_collide) << exponent;
+    EXPECT_NEAR(result.time_of_contact, 2.5 / 4, kTimeError) << exponent;
+  }
+}
+
 }  // namespace
 }  // namespace test
 }  // namespace fcl

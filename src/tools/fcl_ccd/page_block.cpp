@@ -27,7 +27,8 @@ ViewGrid ViewGrid::of(const Vertices& vertices, int cells) {
   const double diagonal =
       std::hypot(hi[0] / 2 - lo[0] / 2, hi[1] / 2 - lo[1] / 2, hi[2] / 2 - lo[2] / 2) * 2;
   if (diagonal > 0 && std::isfinite(diagonal))
-    grid.spacing = std::exp2(std::ceil(std::log2(diagonal / cells)));
+    grid.spacing = std::max(std::numeric_limits<double>::min(),
+                            std::exp2(std::ceil(std::log2(diagonal / cells))));
   return grid;
 }
 
