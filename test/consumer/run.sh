@@ -56,13 +56,18 @@ read -ra around <<<"$(pkg-config --cflags eigen3 ccd octomap)"
 run_with() { LD_LIBRARY_PATH=$1/$lib "${@:2}"; }
 
 # configure_and_run NAME PREFIX [OPTION ...]: the consumer's program through CMake.
-configure_and_run() {
-  local name=$1 where=$2
-  shift 2
+configure_and_run() { run_through_cmake app "$@"; }
+
+# expect_extended NAME PREFIX [OPTION ...]: the smaller program, where only the prefix differs.
+expect_extended() { run_through_cmake stock_or_not "$@"; }
+
+run_through_cmake() {
+  local program=$1 name=$2 where=$3
+  shift 3
   cmake -S "$source_dir" -B "$work/$name" -DCMAKE_PREFIX_PATH="$where" "$@" \
     >"$work/$name.log"
-  cmake --build "$work/$name" --target app >>"$work/$name.log"
-  "$work/$name/app"
+  cmake --build "$work/$name" --target "$program" >>"$work/$name.log"
+  "$work/$name/$program"
 }
 
 package() {
@@ -99,7 +104,7 @@ door_shared_prefix() {
   [ "$before" = "$(stock_files "$shared" | LC_ALL=C comm -12 - <(echo "$before"))" ] ||
     fail "A file of stock FCL was changed"
   # The package that has a name of its own.
-  configure_and_run shared_own "$shared" -DCONSUMER_FINDS=fcl_ccd
+  expect_extended shared_own "$shared" -DCONSUMER_FINDS=fcl_ccd
   grep -q "extended by fcl_ccd .* $shared/" "$work/shared_own.log" || fail "Not the shared prefix"
   PKG_CONFIG_PATH=$shared/$lib/pkgconfig pkg-config --cflags --libs fcl_ccd >"$work/shared_flags"
   read -ra libs <"$work/shared_flags"
@@ -107,7 +112,7 @@ door_shared_prefix() {
   run_with "$shared" "$work/shared_pc" extended
   # The doors with FCL's names.
   local doors=$shared/lib/fcl-ccd
-  configure_and_run shared_doors "$doors"
+  expect_extended shared_doors "$doors"
   PKG_CONFIG_PATH=$doors/lib/pkgconfig pkg-config --cflags --libs fcl >"$work/shared_flags"
   read -ra libs <"$work/shared_flags"
   "$CXX" -std=c++17 "$source_dir/stock_or_not.cpp" -o "$work/shared_door_pc" "${libs[@]}"
@@ -259,7 +264,7 @@ door_system_prefix() {
   read -ra libs <"$work/system_flags"
   "$CXX" -std=c++17 "$source_dir/stock_or_not.cpp" -o "$work/system_pc" "${libs[@]}"
   run_with "$system" "$work/system_pc" extended
-  configure_and_run system_cmake "$system"
+  expect_extended system_cmake "$system"
 }
 
 door_python_package() { # the Python package in the prefix
