@@ -35,6 +35,29 @@ void makeTables() {
              "' --scenes alphabets cloth flamenco --every 7 --repeats 1 --sample 500");
 }
 
+/// The simulator has answered all contacts of its own steps.
+void checkAnsweredFrames() {
+  const std::string folder = kFolder + "/answered";
+  runProgram("'" FCL_CCD_PAPER "' '" + folder + "' --frames '" + kFolder +
+             "' --kind answered --scenes alphabets cloth flamenco --every 7 --repeats 1 "
+             "--sample 500");
+  const auto scenes = readCsv(folder + "/paper_scenes.csv",
+                              "scene,paper_triangles,triangles,vertices,frames,every,"
+                              "contacts_a_frame,contacts_a_triangle,machine");
+  EXPECT_EQ(scenes.size(), 3u);
+  for (CsvRow row : scenes) EXPECT_EQ(row["contacts_a_frame"], "0") << row["scene"];
+  double none = 0, plain = 0;
+  for (CsvRow row : readCsv(folder + "/figure8.csv",
+                            "scene,frames,boxes,filter,elementary_tests,reduction,"
+                            "reduction_from_rtriangles,missed,extra")) {
+    EXPECT_EQ(row["missed"], "0");
+    if (row["boxes"] != "iccd") continue;
+    EXPECT_EQ(row["extra"], "0");
+    (row["filter"] == "none" ? none : plain) += std::stod(row["elementary_tests"]);
+  }
+  EXPECT_GT(none, 4 * plain);
+}
+
 void checkTable1() {
   std::map<std::string, std::map<std::string, CsvRow>> scenes;
   for (CsvRow row :
@@ -141,6 +164,7 @@ TEST(FCL_PAPER, tablesAreCompleteAndWithoutErrors) {
   checkFigures();
   checkFilter();
   checkTopologies();
+  checkAnsweredFrames();
 }
 
 }  // namespace

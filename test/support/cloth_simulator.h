@@ -191,6 +191,10 @@ class ClothSimulator {
   /// @brief The positions where the last frame's motion began, vertices as in mesh().
   const std::vector<Vector3<double>>& frameBegin() const { return frame_begin_; }
 
+  /// @brief The positions where the last step of the last frame began. From there to
+  /// mesh() is a motion whose contacts were answered.
+  const std::vector<Vector3<double>>& stepBegin() const { return moved_; }
+
   /// @brief The positions to which the last frame would have led if nothing were in the
   /// way. A simulator with one step a frame asks collision detection about this motion.
   const std::vector<Vector3<double>>& freeMotion() const { return free_motion_; }
@@ -315,7 +319,7 @@ class ClothSimulator {
   SimulatorOptions options_;
   Random random_;                       // of what breaks
   TestMesh mesh_;                       // positions at the start of the step
-  std::vector<Vector3<double>> moved_;  // positions at the end of the step
+  std::vector<Vector3<double>> moved_;  // positions at its end; after it, at its start
   std::vector<Vector3<double>> velocities_;
   std::vector<double> inverse_masses_;  // 0 for obstacles
   std::vector<char> is_movable_;

@@ -9,8 +9,11 @@
 namespace fcl {
 namespace test {
 
-FrameFolder::FrameFolder(const std::string& path, int every) : path_(path) {
-  for (int n = every; std::filesystem::exists(file(n, "_end.ply")); n += every)
+FrameFolder::FrameFolder(const std::string& path, FrameKind kind, int every)
+    : path_(path),
+      begin_(kind == FrameKind::kProposed ? "_begin.ply" : "_step.ply"),
+      end_(kind == FrameKind::kProposed ? "_end.ply" : "_accepted.ply") {
+  for (int n = every; std::filesystem::exists(file(n, end_)); n += every)
     numbers_.push_back(n);
   if (numbers_.empty())
     throw std::runtime_error(path +
@@ -19,7 +22,7 @@ FrameFolder::FrameFolder(const std::string& path, int every) : path_(path) {
 }
 
 FramePairMesh FrameFolder::read(std::size_t i) const {
-  return readFramePair(file(numbers_[i], "_begin.ply"), file(numbers_[i], "_end.ply"));
+  return readFramePair(file(numbers_[i], begin_), file(numbers_[i], end_));
 }
 
 std::string FrameFolder::file(int number, const char* ending) const {

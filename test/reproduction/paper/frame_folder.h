@@ -11,6 +11,14 @@
 namespace fcl {
 namespace test {
 
+/// @brief What a frame's motion is.
+enum class FrameKind {
+  /// from where the frame begins to where it leads if nothing is in the way
+  kProposed,
+  /// the last of the simulator's own steps in the frame, whose contacts were answered
+  kAnswered
+};
+
 /// @brief The frames of a scene as `fcl_ccd_scenes --meshes` writes them, read one by
 /// one.
 class FrameFolder {
@@ -18,7 +26,7 @@ class FrameFolder {
   /// @param every  only each frame whose number is a multiple of this: frames 3, 6, 9,
   /// ... if it is 3
   /// @throws std::runtime_error if there is no such frame
-  FrameFolder(const std::string& path, int every);
+  FrameFolder(const std::string& path, FrameKind kind, int every);
 
   std::size_t size() const { return numbers_.size(); }
   /// @brief The number of a frame in the scene, counted from 1.
@@ -30,6 +38,8 @@ class FrameFolder {
   std::string file(int number, const char* ending) const;
 
   std::string path_;
+  /// of the files of the two ends
+  const char *begin_, *end_;
   std::vector<int> numbers_;
 };
 

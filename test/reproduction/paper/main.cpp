@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ using namespace fcl::test;
 struct Options {
   std::string out;
   std::string frames;
+  FrameKind kind{FrameKind::kProposed};
   std::vector<std::string> scenes;
   int every{0};
   Effort effort{3, 0.25};
@@ -104,7 +106,7 @@ void writePicture(const std::string& path, const Image& image) {
 
 void runScene(const SceneInfo& info, const Options& options, PaperTables& tables) {
   const int every = options.everyOf(info.kind);
-  const FrameFolder folder(options.frames + "/" + info.name, every);
+  const FrameFolder folder(options.frames + "/" + info.name, options.kind, every);
   const FramePairMesh last = folder.read(folder.size() - 1);
   const Census census = takeCensus(info, folder, options.sample);
   SceneFigures figures{info.name,
@@ -141,6 +143,12 @@ int main(int argc, char** argv) {
   app.add_option("--frames", options.frames,
                  "Folder with the frames, where fcl_ccd_scenes --meshes left them")
       ->required();
+  const std::map<std::string, FrameKind> kinds{{"proposed", FrameKind::kProposed},
+                                               {"answered", FrameKind::kAnswered}};
+  app.add_option("--kind", options.kind,
+                 "Motions to where nothing is in the way, or steps whose contacts were "
+                 "answered")
+      ->transform(CLI::CheckedTransformer(kinds));
   std::vector<std::string> names;
   for (const SceneInfo& info : sceneInfos()) names.push_back(info.name);
   options.scenes = names;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# awk -F, -f tables.awk paper_scenes.csv paper_frames.csv table1.csv figure6.csv figure8.csv figure9.csv
-#   figure10.csv filter.csv paper_topologies.csv > paper.md
+# awk -F, -v kind=KIND -v prefix=PREFIX -f tables.awk paper_scenes.csv paper_frames.csv table1.csv
+#   figure6.csv figure8.csv figure9.csv figure10.csv filter.csv paper_topologies.csv > paper.md
 # The tables as a page to read, the paper's figures beside ours.
 
 BEGIN {
@@ -37,7 +37,8 @@ function row(first, last,   i, line) {
 function percent(share) { return share == "-" ? share : sprintf("%.0f%%", 100 * share) }
 
 FNR == 1 {
-  if (file == "paper_frames") printFrames()
+  # Of the motions that were proposed.
+  if (file == "paper_frames" && kind == "proposed") printFrames()
   if (file == "table1") printTable1()
   file = FILENAME
   sub(/.*\//, "", file)
@@ -47,7 +48,7 @@ FNR == 1 {
 
 file == "paper_scenes" {
   if (FNR == 2) {
-    print "# The paper's experiments, run again\n"
+    print "# The paper's experiments, run again: " kind " frames\n"
     print "Made by `cmake/paper.sh`; [the guide](../reproduction.md) explains it.\n"
     print "Machine: " $9 ". One thread."
     heading("Scenes", "Frames measured, each `every`-th; contacts of a frame, mean.",
@@ -119,7 +120,7 @@ function printTable1(   i, s, first) {
   }
   heading("Table 1, all methods",
           "ms of a frame (update, traversal, tests), and elementary tests, mean over " \
-          "the frames; errors added up. ![Time of a frame](table1.png)",
+          "the frames; errors added up. ![Time of a frame](" prefix "table1.png)",
           "scene | triangles | frames | method | filter | kernels | query ms | over iccd " \
           "| over r-triangles | elementary tests | missed | extra")
   for (i = 1; i <= rows; ++i) print all[i]
@@ -129,7 +130,7 @@ file == "figure6" {
   if (FNR == 2)
     heading("Figure 6, edges of edge-edge tests",
             "In frame " $2 " of " $1 ": the pairs of edges that the solver is asked, and " \
-            "their edges. ![Edges of edge-edge tests](figure6.png)",
+            "their edges. ![Edges of edge-edge tests](" prefix "figure6.png)",
             "culling | pairs of edges | edges | share of pairs")
   print "| " $3 " | " $4 " | " $5 " | " percent($6) " |"
 }
@@ -138,7 +139,7 @@ file == "figure8" {
   if (FNR == 2)
     heading("Figure 8, elementary tests",
             "A frame, mean. Reduction: from the same boxes without a filter; from " \
-            "R-Triangles without a filter. ![Elementary tests](figure8.png)",
+            "R-Triangles without a filter. ![Elementary tests](" prefix "figure8.png)",
             "scene | boxes | filter | elementary tests | reduction | paper's reduction " \
             "| from r-triangles | missed | extra")
   print "| " $1 " | " $3 " | " $4 " | " $5 " | " $6 " | " \
@@ -177,7 +178,7 @@ file == "paper_topologies" && ($3 == "none" || $2 == "ours") {
 END {
   if (curves > 0)
     heading("Figure 9, time over the frames of " figure9,
-            "ms of a frame. ![Time over the frames](figure9.png)",
+            "ms of a frame. ![Time over the frames](" prefix "figure9.png)",
             "method | frames | mean | most | errors")
   for (i = 1; i <= curves; ++i) {
     key = curve[i]
@@ -187,7 +188,7 @@ END {
   if (ratios > 0)
     heading("Figure 10, pairs without penetration",
             "Share of the pairs of features that the filter culls, over the frames. The " \
-            "paper's \"tend to be above 80%\". ![Pairs without penetration](figure10.png)",
+            "paper's \"tend to be above 80%\". ![Pairs without penetration](" prefix "figure10.png)",
             "scene | boxes | filter | least | mean | most | frames above 80%")
   for (i = 1; i <= ratios; ++i) {
     key = ratio[i]

@@ -40,12 +40,17 @@ std::string numbered(int index, const char* ending) {
   return name;
 }
 
-/// The two ends of a frame's motion; where it was led to instead is the next one's begin.
+/// The ends of two motions: of the frame if nothing is in the way, and of the simulator's
+/// last step in it, which ends where the frame ended after all.
 void writeMeshes(const std::string& folder, const SceneFrame& frame) {
-  writeFile(folder + "/" + numbered(frame.index + 1, "_begin.ply"),
-            encodeFrame(frame, frame.previous));
-  writeFile(folder + "/" + numbered(frame.index + 1, "_end.ply"),
-            encodeFrame(frame, frame.current));
+  const auto write = [&](const char* ending, const auto& positions) {
+    writeFile(folder + "/" + numbered(frame.index + 1, ending),
+              encodeFrame(frame, positions));
+  };
+  write("_begin.ply", frame.previous);
+  write("_end.ply", frame.current);
+  write("_step.ply", frame.step_begin);
+  write("_accepted.ply", frame.accepted);
 }
 
 void run(const SceneInfo& info, const Options& options) {

@@ -337,7 +337,7 @@ void generateScene(SceneKind kind, const SceneOptions& options, const SceneSink&
       throw Exception("generateScene: nothing moves in frame " + std::to_string(i + 1) +
                       ", nor would it in any after that");
     if (!sink({i, simulator.time(), simulator.mesh().triangles, simulator.frameBegin(),
-               simulator.freeMotion(), simulator.mesh().vertices,
+               simulator.freeMotion(), simulator.mesh().vertices, simulator.stepBegin(),
                simulator.topologyChange(), report, simulator.bodies(), stage->roles}))
       return;
   }

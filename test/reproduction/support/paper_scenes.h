@@ -55,6 +55,8 @@ struct SceneFrame {
   const std::vector<Vector3<double>>& current;
   /// those that the next frame begins with, unless the topology changes then
   const std::vector<Vector3<double>>& accepted;
+  /// where the last of the simulator's own steps began, which led to `accepted`
+  const std::vector<Vector3<double>>& step_begin;
   /// how `triangles` and `previous` differ from the frame before's `triangles` and
   /// `accepted`; vertices on a crack have moved a little too, hence all of the bodies
   /// that broke may differ by rounding
