@@ -479,7 +479,7 @@ TEST(FCL_KERNELS, unboundedOverlapsWhatIsInUse) {
     detail::deformable::MovingKdop box;
     std::fill(box.t0.half, box.t0.half + 16, half);
     box.t1 = box.t0;
-    for (int count = 0; count <= kWidth; ++count) {
+    for (int count = 1; count <= kWidth; ++count) {
       MovingKdopNode node;
       node.count = count;
       for (int lane = 0; lane < count; ++lane) {
