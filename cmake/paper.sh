@@ -51,6 +51,7 @@ fcl_ccd_simulate() {
     true-alphabets) scale=0.3 ;;
     true-*) scale=0.1 ;;
   esac
+  rm -f "$frames/$scene/frames.csv"
   build/release/test/reproduction/fcl_ccd_scenes "$frames" --meshes --scenes "$scene" \
     --scale "$scale" --threads "$(nproc)"
 }

@@ -14,7 +14,6 @@
 #include "elementary/exact.h"
 #include "elementary/in_plane.h"
 #include "elementary/interval_stack.h"
-#include "elementary/least_length.h"
 #include "elementary/moving_pair.h"
 #include "elementary/pair_table.h"
 #include "elementary/predicates.h"
@@ -451,8 +450,7 @@ void contactGeometry(ContinuousContactKind kind, const FeaturePoints& x, double 
     return;
   }
   n = (1 / length) * n;
-  // A subnormal square has lost digits.
-  assert(area < kLeastSquare || std::abs(dot(n, n) - 1) < 0x1p-46);
+  assert(std::abs(dot(n, n) - 1) < 0x1p-46);
   double along =
       dot(n, {relative_velocity[0], relative_velocity[1], relative_velocity[2]});
   if (along == 0) along = -dot(n, {offset_t0[0], offset_t0[1], offset_t0[2]});
