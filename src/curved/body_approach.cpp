@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <boost/math/tools/minima.hpp>
 #include <cassert>
+#include <cfloat>
 #include <cmath>
 #include <tuple>
 #include <utility>
@@ -385,7 +386,8 @@ void BodyApproach::Search::decidePair(const PartWork& work, const Pair& pair) {
     if (improve(work, pair, t, endOfDescent(pair, t, end)))
       lowered = 0;
     else
-      lowered = std::max(4 * lowered, tolerance());
+      // The tolerance of a subnormal distance may be 0.
+      lowered = std::max({4 * lowered, tolerance(), DBL_MIN});
   }
 }
 

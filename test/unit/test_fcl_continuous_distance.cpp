@@ -240,6 +240,21 @@ TEST(FCL_CONTINUOUS_DISTANCE, maxDistance) {
   EXPECT_GE(far.distance_hi, 87);
 }
 
+// Two points in one place, and a bound whose tolerance rounds to 0.
+TEST(FCL_CONTINUOUS_DISTANCE, subnormalMaxDistanceEnds) {
+  DeformableBVHModel<> point;
+  point.beginModel();
+  point.addPoint(Vector3<double>::Zero());
+  point.endModel();
+  const Transform3<double> still = Transform3<double>::Identity();
+  Request request;
+  request.max_distance = std::numeric_limits<double>::denorm_min();
+  Result result;
+  continuousDistance(&point, still, still, &point, still, still, request, result);
+  EXPECT_EQ(result.distance_lo, 0);
+  EXPECT_LE(result.distance_hi, 1e-150);
+}
+
 TEST(FCL_CONTINUOUS_DISTANCE, maxDistanceBelowRounding) {
   // The radii have no digits for it, but far more than that is proved.
   const Sphere<double> a(0.25), b(0.5);
