@@ -14,6 +14,9 @@ namespace detail {
 namespace deformable {
 namespace {
 
+/// Steps after which sets that are still apart probably move along each other.
+constexpr int kPlainSteps = 32;
+
 double accelerationOf(const MovingConvex& set, double t0, double t1) {
   const AccelerationBound bound = set.path->acceleration(t0, t1);
   if (bound.isZero() && bound.per_displacement == 0) return 0;
@@ -21,6 +24,18 @@ double accelerationOf(const MovingConvex& set, double t0, double t1) {
   const double radius = set.shape->flat() ? 0 : set.shape->box().radius;
   return bound.of(set.shape->center(), radius) * kUpward;
 }
+
+/// How far a point of the set moves in the frame of its body.
+double displacementOf(const MovingConvex& set) {
+  double most = 0;
+  for (int i = 0; i < 3 && !set.shape; ++i)
+    most = std::max(most, norm(set.triangle.corner[1][i] - set.triangle.corner[0][i]));
+  return most;
+}
+
+/// 256 u of the size of the paths and of the points, in units of the position error,
+/// which is at least 48 u of it: what axisAcceleration() rounds by.
+constexpr double kAxisRoundings = 6;
 
 int flatOf(const MovingConvex& a, const MovingConvex& b) {
   if (a.shape && a.shape->flat()) return 0;
@@ -83,10 +98,17 @@ ConvexAdvance::ConvexAdvance(const MovingConvex& a, const MovingConvex& b, doubl
       flat_(flatOf(a, b)),
       t1_(t1),
       tolerance_(tolerance),
-      acceleration_(accelerationOf(a, t0, t1) + accelerationOf(b, t0, t1)) {
+      set_acceleration_{accelerationOf(a, t0, t1), accelerationOf(b, t0, t1)},
+      acceleration_(set_acceleration_[0] + set_acceleration_[1]) {
   assert(a.shape || b.shape);
   assert(!(a.shape && a.shape->flat()) || !(b.shape && b.shape->flat()));
   assert(isPartOfStep(t0, t1) && !(acceleration_ < 0) && !(tolerance.distance < 0));
+  for (int k = 0; k < 2; ++k)
+    axis_acceleration_[k] =
+        set_[k]->path->axis()
+            ? set_[k]->path->axisAcceleration(displacementOf(*set_[k])) +
+                  kAxisRoundings * tolerance_.position
+            : 0;
 }
 
 void ConvexAdvance::ignoreInitiallyCloser() {
@@ -161,7 +183,20 @@ double ConvexAdvance::Side::size() const {
 }
 
 ConvexAdvance::Separator ConvexAdvance::inWorld(const Vec& direction) const {
-  return {direction, {0, 0, 0}, acceleration_, margin(1), 1};
+  return {direction, {0, 0, 0}, accelerationAlong(direction), margin(1), 1};
+}
+
+/// Bound on the acceleration of two points to each other along a direction. That of a
+/// turn is at right angles to its axis.
+double ConvexAdvance::accelerationAlong(const Vec& direction) const {
+  double most = 0;
+  for (int k = 0; k < 2; ++k) {
+    const Vec* const axis = set_[k]->path->axis();
+    const double share = axis ? norm(cross(direction, *axis)) + 0x1p-48 : 1;
+    most += std::min(set_acceleration_[k],
+                     share * set_acceleration_[k] + axis_acceleration_[k]);
+  }
+  return most * kUpward;
 }
 
 /// A matrix that is no rotation changes the length of the normal of a flat. How much
@@ -268,8 +303,8 @@ double ConvexAdvance::step(double t, const State& state, const Separator& along)
 
 /// A direction that turns with a body stays at right angles to its flat sides, so that a
 /// large one does not shorten the step.
-double ConvexAdvance::longestStep(double t, const State& state,
-                                  const ConvexGap& gap) const {
+double ConvexAdvance::fixedStep(double t, const State& state,
+                                const ConvexGap& gap) const {
   if (flat_ >= 0) return step(t, state, inBody(flat_, t, state, gap));
   double best = step(t, state, inWorld(gap.direction));
   for (int k = 0; k < 2; ++k) {
@@ -278,6 +313,56 @@ double ConvexAdvance::longestStep(double t, const State& state,
       best = std::max(best, step(t, state, inBody(k, t, state, gap)));
   }
   return best;
+}
+
+/// The common normal of two edges turns with neither of their bodies. Along any fixed
+/// direction the edges would come nearer in proportion to their length, so that they pass
+/// each other at a small distance in short steps.
+double ConvexAdvance::longestStep(double t, const State& state, const ConvexGap& gap) {
+  const double best = fixedStep(t, state, gap);
+  if (++num_steps_ <= kPlainSteps || flat_ >= 0 || best >= t1_ - t) return best;
+  return std::max(best, turningStep(t, state, gap));
+}
+
+// The direction n + h m goes from the one at t to that at a later time, at which the sets
+// are still apart, where m is at right angles to n and h |m| <= 1/2. For two points with
+// the difference z
+//   (n + h m) . z(t + h) >= (n + h m) . z + h n . z' - (2 |m| |z'| + 1.12 |z''|) h^2 / 2,
+// and it proves a distance above d while this is more than
+// d |n + h m| <= d (1 + h^2 |m|^2 / 2). Positions round by 1.5 of their error, since n .
+// z and h m . z are products by themselves. The rate is multiplied by |n + h m| too.
+double ConvexAdvance::turningStep(double t, const State& state, const ConvexGap& gap) {
+  constexpr double kMostTurn = 0.5, kMostLength = 1.12, kLonger = 4;
+  constexpr int kAttempts = 4;
+  const double d = tolerance_.distance, longest = t1_ - t, speed_of_both = speed();
+  const Vec& n = gap.direction;
+  const auto bendAt = [&](double turn_speed) {
+    return (kMostLength * acceleration_ +
+            turn_speed * (2 * speed_of_both + d * turn_speed + tolerance_.rate)) *
+           kUpward;
+  };
+  Separator along{n, {0, 0, 0}, 0, margin(1) + 0.5 * tolerance_.position, longest};
+  const double room = gapAfter(0, state, along);
+  if (!(room > 0)) return -1;
+  // They may be in contact at the end of the step that the bend alone would allow.
+  double later = t;
+  ConvexGap next{};
+  horizon_ =
+      std::min({longest, kLonger * horizon_, std::sqrt(2 * room / bendAt(turn_speed_))});
+  for (int attempt = 0; attempt < kAttempts && !(next.gap > margin(1)); ++attempt) {
+    if (attempt > 0) horizon_ /= kLonger;
+    later = std::min(t + horizon_, t1_);
+    if (!(later > t)) return -1;
+    const State there = stateAt(later);
+    next = convexGap(there.side[0].now, there.side[1].now, n, margin(1), 0);
+  }
+  if (!(next.gap > margin(1))) return -1;
+  const Vec change = (1 / (later - t)) * (next.direction - n);
+  along.change = change - dot(n, change) * n;
+  turn_speed_ = norm(along.change) * kUpward;
+  along.acceleration = bendAt(turn_speed_);
+  along.longest = kMostTurn / turn_speed_;
+  return step(t, state, along);
 }
 
 /// The gap along the normal of a flat. Points of the other set that are lowest, or

@@ -103,7 +103,8 @@ class ConvexAdvance {
   State stateAt(double t) const { return {{sideAt(0, t), sideAt(1, t)}}; }
   ConvexGap gapOf(const State& state, double contact) const;
   ConvexGap flatGap(const State& state) const;
-  /// A direction that is fixed in the world, or in a body.
+  /// A direction that is fixed in the world or in a body, or that turns with the nearest
+  /// features.
   struct Separator {
     Vec direction, change;
     /// Bound on the second derivative of the relative coordinate of two points.
@@ -120,10 +121,13 @@ class ConvexAdvance {
   double growthOfNormal(const State& state) const;
   Vec firstGuess(const State& state) const;
   Separator inWorld(const Vec& direction) const;
+  double accelerationAlong(const Vec& direction) const;
   Separator inBody(int k, double t, const State& state, const ConvexGap& gap) const;
   double gapAfter(double h, const State& state, const Separator& separator) const;
   double step(double t, const State& state, const Separator& separator) const;
-  double longestStep(double t, const State& state, const ConvexGap& gap) const;
+  double longestStep(double t, const State& state, const ConvexGap& gap);
+  double fixedStep(double t, const State& state, const ConvexGap& gap) const;
+  double turningStep(double t, const State& state, const ConvexGap& gap);
 
   const MovingConvex* set_[2];
   /// The set that is a plane or a halfspace; -1: none. Then the sets are apart along its
@@ -132,8 +136,16 @@ class ConvexAdvance {
   double t1_;
   /// The tolerance of this pair, with its distance of contact.
   BodyTolerance tolerance_;
+  /// Bounds on the acceleration of the points of each set, and of the part of it along
+  /// the axis of a turn.
+  double set_acceleration_[2], axis_acceleration_[2];
   /// Bound on the relative acceleration of two points.
   double acceleration_{0};
+  /// The steps that were taken, and how fast the nearest features turned at the last one.
+  int num_steps_{0};
+  double turn_speed_{0};
+  /// How much later the direction was that this was measured by.
+  double horizon_{1};
   Vec suggested_{0, 0, 0};
   /// The direction of the last gap; 0: there is none.
   Vec guess_{0, 0, 0};

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cfloat>
 #include <cmath>
+#include <iterator>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -60,6 +61,16 @@ double mostOf(const BodiesNearOrigin& near, double max_distance) {
   return std::max(std::min(sizes, max_distance), kTouchings * rounding);
 }
 
+double longestEdge(const BodyTriangle& triangle) {
+  double square = 0;
+  for (const auto& corner : triangle.corner)
+    for (int i = 0; i < 3; ++i) {
+      const Vec edge = corner[(i + 1) % 3] - corner[i];
+      square = std::max(square, dot(edge, edge));
+    }
+  return std::sqrt(square);
+}
+
 /// The nearest points of two surfaces at a time.
 struct NearestPoints {
   double distance;
@@ -89,16 +100,10 @@ class TwoTriangles {
 
   /// More than the distance of triangles that cross.
   double size() const {
-    double square = 0;
-    for (const BodyTriangle& triangle : triangle_)
-      for (const auto& corner : triangle.corner)
-        for (int i = 0; i < 3; ++i) {
-          const Vec edge = corner[(i + 1) % 3] - corner[i];
-          square = std::max(square, dot(edge, edge));
-        }
     const double stretch =
         std::max(body_[0]->path().stretch(), body_[1]->path().stretch());
-    return stretch * std::sqrt(square) * kUpward;
+    return stretch * std::max(longestEdge(triangle_[0]), longestEdge(triangle_[1])) *
+           kUpward;
   }
 
  private:
@@ -135,10 +140,31 @@ class ConvexPair {
     return out;
   }
 
-  /// What overlaps is found to do so.
-  static double size() { return 0; }
+  /// What overlaps is found to do so, if the differences of the points have an interior.
+  /// Otherwise sets that are nearer than their size, or than a part of the way that they
+  /// go, may touch.
+  double size() const {
+    constexpr double kPart = 0x1p-10;
+    if (radius_[0] + radius_[1] > 0 || hasInterior(set_[0]) || hasInterior(set_[1]))
+      return 0;
+    return std::max(sizeOf(set_[0]) + sizeOf(set_[1]),
+                    kPart * (set_[0].speed + set_[1].speed));
+  }
 
  private:
+  static bool hasInterior(const MovingConvex& set) {
+    if (!set.shape) return false;
+    if (set.shape->flat()) return set.shape->flat()->is_solid;
+    const auto& extent = set.shape->box().extent;
+    return std::all_of(std::begin(extent), std::end(extent),
+                       [](double x) { return x > 0; });
+  }
+
+  static double sizeOf(const MovingConvex& set) {
+    if (!set.shape) return longestEdge(set.triangle);
+    return set.shape->flat() ? 0 : 2 * set.shape->box().radius;
+  }
+
   bool is_mesh_[2];
   double radius_[2];
   MovingConvex set_[2];

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Shapes that pass each other at small or constant distances, in how many steps.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "curved/body_approach.h"
+#include "curved/curved_query.h"
+#include "sanitizer.h"
+#include "turning_bodies.h"
+
+namespace fcl {
+namespace test {
+namespace {
+using namespace detail::deformable;
+
+/// The z axis from -half to half, moved.
+struct Rod {
+  ReferenceMotion motion;
+  double half;
+
+  RealVector middle(Real t) const { return motion.at(t).translation; }
+  RealVector along(Real t) const {
+    return motion.at(t).rotation.col(2) * static_cast<Real>(half);
+  }
+};
+
+/// The distance of the rods' lines, if the nearest points are inside of both; 9 if not.
+Real distanceInside(const Rod& a, const Rod& b, Real t) {
+  const RealVector u = a.along(t), v = b.along(t), w = b.middle(t) - a.middle(t),
+                   n = u.cross(v);
+  const Real square = n.squaredNorm();
+  if (!(square > 0.01L)) return 9;
+  // w + y v - x u is parallel to n.
+  const Real x = w.cross(v).dot(n) / square, y = w.cross(u).dot(n) / square;
+  if (std::abs(x) > 0.9L || std::abs(y) > 0.9L) return 9;
+  return std::abs(w.dot(n)) / std::sqrt(square);
+}
+
+/// The least distance of an end of a rod from the other one.
+Real distanceOfEnds(const Rod& a, const Rod& b, Real t) {
+  Real least = 9;
+  for (const auto& [from, to] : {std::make_pair(&a, &b), std::make_pair(&b, &a)})
+    for (const Real side : {-1, 1}) {
+      const RealVector along = to->along(t),
+                       way = from->middle(t) + side * from->along(t) - to->middle(t);
+      const Real share = std::clamp<Real>(way.dot(along) / along.squaredNorm(), -1, 1);
+      least = std::min(least, (way - share * along).norm());
+    }
+  return least;
+}
+
+/// The time at which the distance is least, if the rods are nearest inside of both then
+/// and clearly further apart at other times; negative if not.
+Real timeOfLeast(const Rod& a, const Rod& b) {
+  constexpr int kSamples = 32;
+  constexpr Real kStep = 1.L / kSamples, kClearly = 0.02L, kLeast = 0.05L;
+  const auto inside = [&](Real t) { return distanceInside(a, b, t); };
+  int best = 0;
+  for (int i = 0; i <= kSamples; ++i)
+    if (inside(i * kStep) < inside(best * kStep)) best = i;
+  if (best < 3 || best > kSamples - 3 || inside(best * kStep) < kLeast) return -1;
+  Real lo = (best - 1) * kStep, hi = (best + 1) * kStep;
+  for (int round = 0; round < 70; ++round) {
+    const Real x = (2 * lo + hi) / 3, y = (lo + 2 * hi) / 3;
+    if (inside(x) < inside(y))
+      hi = y;
+    else
+      lo = x;
+  }
+  const Real least = inside(lo), kNear = 1e-6L;
+  if (!(least <= inside(lo - kNear)) || inside(lo - kNear) > 2) return -1;
+  if (!(least <= inside(lo + kNear)) || inside(lo + kNear) > 2) return -1;
+  for (int i = 0; i <= kSamples; ++i)
+    if (std::abs(i - best) > 2 && inside(i * kStep) < least + kClearly) return -1;
+  for (int i = 0; i <= kSamples; ++i)
+    if (distanceOfEnds(a, b, i * kStep) < least + kClearly) return -1;
+  return lo;
+}
+
+Rod randomRod(Random& random) {
+  Rod rod{randomMotion(random, 0.5), random.uniform(1.5, 3)};
+  rod.motion.kind = random.uniform(0, 1) < 0.5 ? ReferenceMotion::Kind::kScrew
+                                               : ReferenceMotion::Kind::kInterpolation;
+  return rod;
+}
+
+/// The common normal of two edges turns with neither of them.
+TEST(FCL_CONVEX_ADVANCE, edgesThatTurnPastEachOther) {
+  constexpr int kMostSteps = 1000;
+  int count = 0;
+  for (int seed = 0; count < rounds(60); ++seed) {
+    SCOPED_TRACE(seed);
+    ASSERT_LT(seed, 20000);
+    Random random(4100 + seed);
+    const Rod a = randomRod(random), b = randomRod(random);
+    const Real time = timeOfLeast(a, b);
+    if (time < 0) continue;
+    ++count;
+    const Real least = distanceInside(a, b, time);
+    const double gap = std::pow(10, random.uniform(-10, -3));
+    const auto ask = [&](double radius) {
+      const ConvexShape one(EdgeCore(a.half), radius), other(EdgeCore(b.half), radius);
+      return queryCurved({one, a.motion.path()}, {other, b.motion.path()}, {});
+    };
+    const double radius = static_cast<double>(least) / 2;
+    const CurvedAnswer apart = ask(radius - gap / 2), touching = ask(radius + gap / 2);
+    EXPECT_TRUE(apart.contacts.empty()) << gap;
+    EXPECT_LT(std::max(apart.counts.steps, touching.counts.steps), kMostSteps) << gap;
+    ASSERT_EQ(touching.contacts.size(), 1) << gap;
+    EXPECT_LE(touching.contacts[0].toc_lo, static_cast<double>(time)) << gap;
+    EXPECT_NEAR(
+        static_cast<double>(distanceInside(a, b, touching.contacts[0].toc_lo) - least),
+        gap, 1e-3 * gap + 1e-11);
+  }
+}
+
+/// All acceleration is at right angles to the axis, along which they are apart.
+TEST(FCL_CONVEX_ADVANCE, turnsAtConstantHeight) {
+  const ConvexShape box = ConvexShape::cuboid({0.5, 0.5, 0.5});
+  const Body floor({{{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}}, {Triangle(0, 1, 2)}});
+  const BodyOnPath still(floor, ReferenceMotion().path());
+  ReferenceMotion motion;
+  motion.beginning.translation()[2] = motion.end.translation()[2] = 0.51;
+  motion.turn(Vector3<double>::UnitZ(), 1.5);
+  ApproachOptions options;
+  options.rel_err = 1e-9;
+  BodyApproach approach({box, motion.path()}, still.body, options);
+  ASSERT_TRUE(approach.search());
+  const ApproachAnswer answer = approach.answer();
+  EXPECT_LE(answer.lo, 0.01);
+  EXPECT_NEAR(answer.hi, 0.01, 1e-12);
+  EXPECT_LE(answer.hi - answer.lo, 1.1e-11);
+  EXPECT_LT(answer.counts.steps, 100);
+}
+
+/// A search for the distance 0 would halve what it has shown without an end.
+TEST(FCL_CONVEX_ADVANCE, pointThroughATriangle) {
+  const ConvexShape point(EdgeCore(0), 0);
+  const Body floor({{{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}}, {Triangle(0, 1, 2)}});
+  const BodyOnPath still(floor, ReferenceMotion().path());
+  for (int i = 0; i < 20; ++i) {
+    SCOPED_TRACE(i);
+    Random random(500 + i);
+    ReferenceMotion motion = randomMotion(random, 0.9);
+    motion.kind = ReferenceMotion::Kind::kScrew;
+    motion.beginning.translation()[2] = 1;
+    motion.end.translation()[2] = -1;
+    BodyApproach approach({point, motion.path()}, still.body, {});
+    EXPECT_FALSE(approach.search());
+    EXPECT_LT(approach.answer().counts.steps, 100);
+  }
+}
+
+}  // namespace
+}  // namespace test
+}  // namespace fcl
