@@ -187,10 +187,15 @@ void followShapes(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
   RequestFilter filter(request, o1.geometry(), o2.geometry(), false);
   options.filter = filter.prepare();
   QueryAnswer answer;
-  if (!filter.rejectsAll() && !isNoObstacleFor(o1, o2) && !isNoObstacleFor(o2, o1))
-    answer = are_flats ? queryFlats(deformable::posedFlatOf(o1, "o1"),
-                                    deformable::posedFlatOf(o2, "o2"), options)
-                       : boundedAnswerOf(o1, o2, options, shapes);
+  if (filter.rejectsAll() || isNoObstacleFor(o1, o2) || isNoObstacleFor(o2, o1)) {
+    // No pair counts.
+  } else if (are_flats) {
+    const deformable::PosedFlat flat1 = deformable::posedFlatOf(o1, "o1"),
+                                flat2 = deformable::posedFlatOf(o2, "o2");
+    answer = queryFlats(flat1, flat2, options);
+  } else {
+    answer = boundedAnswerOf(o1, o2, options, shapes);
+  }
   answer.times.test = start.seconds() - answer.times.update;
   reply.give(answer, o1.geometry(), o2.geometry(), options);
 }
@@ -303,6 +308,11 @@ void answerCompounds(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
 
 }  // namespace
 
+template <typename S>
+void requireValid(const ContinuousContactRequest<S>& request) {
+  const CheckedRequest checked(request);
+}
+
 template <typename S, typename Request>
 bool answerPair(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
                 const Request& request, QueryOutcome<S>& outcome,
@@ -393,6 +403,7 @@ bool isDeformableModel(const CollisionGeometry<S>& o) {
 #define FCL_CCD_INSTANTIATE(S)                                                      \
   FCL_CCD_INSTANTIATE_FOR(S, ContinuousCollisionRequest<S>)                         \
   FCL_CCD_INSTANTIATE_FOR(S, ContinuousContactRequest<S>)                           \
+  template void requireValid(const ContinuousContactRequest<S>&);                   \
   template void refuseContacts(const MovingGeometry<S>&, const MovingGeometry<S>&); \
   template bool isDeformingMesh(const CollisionGeometry<S>&);                       \
   template bool isDeformableModel(const CollisionGeometry<S>&);

@@ -239,9 +239,12 @@ class CompoundDistance {
 
  private:
   void take(const PartPair& pair) {
-    ContinuousDistanceResult<S> one;
+    ContinuousDistanceResult<S> one = noDistance<S>();
     compounds_.ask(pair, [&](const PlacedGeometry<S>& x, const PlacedGeometry<S>& y) {
-      one = DistanceQuery<S>(x.moving(), y.moving(), request_).run();
+      // Two of these have no distance, in the manager neither.
+      if (!deformable::isUnbounded(x.geometry()) ||
+          !deformable::isUnbounded(y.geometry()))
+        one = DistanceQuery<S>(x.moving(), y.moving(), request_).run();
     });
     one.part1 = compounds_.number1(pair);
     one.part2 = compounds_.number2(pair);

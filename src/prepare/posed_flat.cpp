@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "fcl/common/exception.h"
 #include "fcl/geometry/shape/halfspace.h"
 #include "fcl/geometry/shape/plane.h"
 #include "paths/posed_vector.h"
@@ -43,6 +45,11 @@ PosedFlat posedFlatOf(const PlacedGeometry<S>& placed, const char* name) {
                                      placed.beginning(), placed.end())
                             : flatOf(static_cast<const Halfspace<S>&>(shape),
                                      placed.beginning(), placed.end());
+  // Differences of offsets are finite then.
+  constexpr double kMostSize = 0x1p500;
+  if (!(flat.size < kMostSize))
+    throw Exception(std::string(name) + ": its path has coordinates beyond 2^500. Use " +
+                    "larger units of length or a smaller translation");
   flat.is_solid = !is_plane;
   flat.goes_straight = placed.goesStraight();
   return flat;

@@ -554,18 +554,26 @@ TEST(CollisionRobot, RefusesWhatItCannotAnswer) {
   expectRefused([&] { check({0, 0}, {0, 0, 0}); }, "end has 3 values");
   expectRefused([&] { check({0, 0}, {0, NAN}); }, "value 1");
   expectRefused([&] { check({0, 0}, {0, 1e9}); }, "2^20");
+  Result result;
   Request wrong;
   wrong.t_max = 2;
   expectRefused([&] { check({0, 0}, {0, 0}, wrong); }, "t_max");
   wrong = Request();
   wrong.num_threads = -1;
+  // Also where no boxes meet.
+  expectRefused(
+      [&] {
+        robot.checkEdge({0, 0}, {0, 0}, nullptr, wrong, result);
+      },
+      "num_threads");
+  wrong = Request();
+  wrong.min_approach_speed = 1;
   expectRefused(
       [&] {
         check({0, 0}, {0, 0}, wrong);
       },
       "o1 is part 0 of link 0 (upper), o2 is object 0");
   const ChainMotion stranger(TwoLinks().chain, {0, 0}, {1, 1});
-  Result result;
   expectRefused([&] { robot.checkMotion(stranger, nullptr, Request(), result); },
                 "not one of this robot's chain");
 }

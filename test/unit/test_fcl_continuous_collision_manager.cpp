@@ -649,13 +649,18 @@ TEST(ContinuousCollisionManager, Errors) {
   request = Request();
   request.min_distance = -1;
   EXPECT_THROW(manager.collide(request, result), Exception);
+  request = Request();
+  request.num_threads = -1;
+  EXPECT_THROW(manager.collide(request, result), Exception);
   // What a pair throws names its objects.
   manager.registerObject(stranger);
   request = Request();
-  request.num_threads = -1;
+  request.accepts_triangles = [](std::intptr_t, std::intptr_t) -> bool {
+    throw Exception("no");
+  };
   try {
     manager.collide(request, result);
-    FAIL() << "num_threads -1 was taken";
+    FAIL() << "a function that throws was not called";
   } catch (const Exception& error) {
     EXPECT_NE(std::string(error.what()).find("o1 is object 0, o2 is object 1"),
               std::string::npos)

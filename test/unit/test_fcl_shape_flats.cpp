@@ -8,10 +8,12 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "curved/overlap_at_start.h"
 #include "curved/shape_contacts.h"
+#include "fcl/common/exception.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/geometry/shape/halfspace.h"
 #include "fcl/geometry/shape/plane.h"
@@ -270,6 +272,23 @@ TEST(FCL_SHAPE_FLATS, normalsOfAllLengths) {
     continuousCollide(ball.get(), begin, end, &half, still, still, request, result);
     ASSERT_TRUE(result.is_collide) << exponent;
     EXPECT_NEAR(result.time_of_contact, 2.5 / 4, kTimeError) << exponent;
+  }
+}
+
+/// The difference of their offsets would not be finite.
+TEST(FCL_SHAPE_FLATS, offsetsBeyondTheRange) {
+  const Pose still = Pose::Identity();
+  const Halfspace<double> below(Point::UnitZ(), -1e308), above(-Point::UnitZ(), -1e308),
+      near(-Point::UnitZ(), -1);
+  Result result;
+  for (const auto& [o1, o2, name] :
+       {std::make_tuple(&below, &above, "o1"), std::make_tuple(&near, &above, "o2")}) {
+    try {
+      continuousCollide(o1, still, still, o2, still, still, Request(), result);
+      ADD_FAILURE() << name;
+    } catch (const Exception& error) {
+      EXPECT_EQ(std::string(error.what()).find(name), 0U) << error.what();
+    }
   }
 }
 

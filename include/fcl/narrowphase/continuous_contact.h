@@ -326,6 +326,13 @@ struct ContinuousContactResult : ContinuousCollisionResult<S>, ContinuousContact
 using ContinuousContactResultf = ContinuousContactResult<float>;
 using ContinuousContactResultd = ContinuousContactResult<double>;
 
+namespace detail {
+
+/// @throws fcl::Exception  a field has no valid value
+template <typename S>
+FCL_EXPORT void requireValid(const ContinuousContactRequest<S>& request);
+
+}  // namespace detail
 }  // namespace fcl
 
 #endif

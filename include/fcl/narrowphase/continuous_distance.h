@@ -59,7 +59,9 @@ template <typename S>
 struct ContinuousDistanceResult {
   /// @brief During the step the objects are never nearer than distance_lo. At `time` they
   /// are not further apart than distance_hi. Both are 0 if they touch. Both are infinite
-  /// if no pair counts: all are filtered out, or an octree has no occupied cell.
+  /// if no pair counts: all are filtered out, or an octree has no occupied cell. (If
+  /// groups or a function reject all triangles and max_distance is finite, that may be
+  /// the same as if the query was cut off.)
   S distance_lo{0};
   S distance_hi{0};
 
@@ -186,6 +188,9 @@ S distanceOfObjects(const CollisionObject<S>* o1, const Transform3<S>& tf1_end,
 /// surfaces may that slide along each other at a tiny distance; if matrices are rotations
 /// up to 2^-10 only; or in float, if an object goes further than the tolerance between
 /// two times that are floats. distance_lo and distance_hi are right all the same.
+///
+/// Of two compounds, parts that are both planes or halfspaces are left out, also if they
+/// touch.
 ///
 /// @throws fcl::Exception  as continuousCollide(), where FCL would answer the pair, and:
 /// both objects are planes or halfspaces; abs_err, rel_err or max_distance is negative or

@@ -78,10 +78,12 @@ std::vector<Answer> firstAnswer(const std::vector<Pair>& pairs,
 /// @param pairs  sorted by t_lo
 /// @param asked  the test may set its filters
 /// @param test  bool test(pair, request, answer): whether a pair is in contact
+/// @throws fcl::Exception  a field of the request has no valid value, also without pairs
 template <typename Answer, typename S, typename Pair, typename Test>
 std::vector<Answer> answersOf(const std::vector<Pair>& pairs,
                               const ContinuousContactRequest<S>& asked,
                               const Test& test) {
+  requireValid(asked);
   ContinuousContactRequest<S> request = asked;
   request.filter1 = request.filter2 = ContinuousFilter();
   if (request.query == ContinuousQuery::kFirst)
