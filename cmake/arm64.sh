@@ -20,7 +20,6 @@ fcl_ccd_install_dependencies build g++-aarch64-linux-gnu qemu-user-static mmdebs
 jobs=$(nproc)
 sysroot=$PWD/build/arm64/sysroot
 build=$PWD/build/arm64/build
-native=$PWD/build/arm64/native
 step() { echo "== $* ($((SECONDS / 60)) min so far)"; }
 
 if [ ! -d "$sysroot" ]; then
@@ -66,13 +65,12 @@ else
 fi
 
 step "the same answers as on this machine"
-cmake -G Ninja -B "$native" -DCMAKE_BUILD_TYPE=Release -DFCL_CCD_BUILD_PYTHON=OFF \
-  -DFCL_CCD_BUILD_BENCHMARKS=OFF
-cmake --build "$native" --target fcl_ccd_digests
-"$native/test/fcl_ccd_digests" >"$native/digests"
+cmake --preset release
+cmake --build --preset release --target fcl_ccd_digests
+build/release/test/fcl_ccd_digests >"$build/digests_here"
 qemu-aarch64-static -L "$sysroot" "$build/test/fcl_ccd_digests" >"$build/digests"
-cat "$native/digests"
-diff "$native/digests" "$build/digests" || {
+cat "$build/digests_here"
+diff "$build/digests_here" "$build/digests" || {
   echo "The answers on arm64 differ from those of this machine" >&2
   exit 1
 }
