@@ -14,9 +14,6 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// Steps after which sets that are still apart probably move along each other.
-constexpr int kPlainSteps = 32;
-
 double accelerationOf(const MovingConvex& set, double t0, double t1) {
   const AccelerationBound bound = set.path->acceleration(t0, t1);
   if (bound.isZero() && bound.per_displacement == 0) return 0;
@@ -319,6 +316,8 @@ double ConvexAdvance::fixedStep(double t, const State& state,
 /// direction the edges would come nearer in proportion to their length, so that they pass
 /// each other at a small distance in short steps.
 double ConvexAdvance::longestStep(double t, const State& state, const ConvexGap& gap) {
+  // Sets that are still apart after these probably move along each other.
+  constexpr int kPlainSteps = 32;
   const double best = fixedStep(t, state, gap);
   if (++num_steps_ <= kPlainSteps || flat_ >= 0 || best >= t1_ - t) return best;
   return std::max(best, turningStep(t, state, gap));
