@@ -112,7 +112,10 @@ class RobotStep<S>::Parts {
  public:
   Parts(const RobotBodies<S>& bodies, const ChainPathPtr& chain) : bodies_(bodies) {
     paths_.reserve(bodies.parts.size());
-    for (const auto& part : bodies.parts) paths_.emplace_back(chain, part->frame);
+    for (const auto& part : bodies.parts) {
+      paths_.emplace_back(chain, part->frame);
+      paths_.back().keepPath();
+    }
     assert(bodies.filters.size() == count());
     assert(std::all_of(bodies.own_pairs.begin(), bodies.own_pairs.end(),
                        [this](const auto& pair) {

@@ -25,6 +25,14 @@ inline void setFloatingPointMode(FloatingPointMode mode) {
   asm volatile("" ::: "memory");
 }
 inline void setDefaultFloatingPointMode() { setFloatingPointMode(0x1f80); }
+/// @brief Whether a mode is the default one, whatever its flags. To set a mode takes
+/// longer than to look at it.
+inline bool isDefaultFloatingPointMode(FloatingPointMode mode) {
+  return (mode & ~0x3fU) == 0x1f80;
+}
+inline void restoreFloatingPointMode(FloatingPointMode mode) {
+  if (floatingPointMode() != mode) setFloatingPointMode(mode);
+}
 
 /// @brief Whether the thread rounds to nearest and keeps subnormals.
 inline bool isDefaultFloatingPointMode() { return (_mm_getcsr() & 0xe040U) == 0; }
@@ -40,6 +48,13 @@ inline FloatingPointMode floatingPointMode() {
 }
 inline void setFloatingPointMode(const FloatingPointMode& mode) { std::fesetenv(&mode); }
 inline void setDefaultFloatingPointMode() { std::fesetenv(FE_DFL_ENV); }
+/// @brief Whether a mode is the default one. What its members mean is not known.
+inline bool isDefaultFloatingPointMode(const FloatingPointMode& /*mode*/) {
+  return false;
+}
+inline void restoreFloatingPointMode(const FloatingPointMode& mode) {
+  setFloatingPointMode(mode);
+}
 
 /// @brief Whether the thread rounds to nearest.
 inline bool isDefaultFloatingPointMode() { return std::fegetround() == FE_TONEAREST; }
@@ -51,8 +66,10 @@ inline bool isDefaultFloatingPointMode() { return std::fegetround() == FE_TONEAR
 /// destructor restores the caller's mode and flags.
 class DefaultFloatingPoint {
  public:
-  DefaultFloatingPoint() { setDefaultFloatingPointMode(); }
-  ~DefaultFloatingPoint() { setFloatingPointMode(saved_); }
+  DefaultFloatingPoint() {
+    if (!isDefaultFloatingPointMode(saved_)) setDefaultFloatingPointMode();
+  }
+  ~DefaultFloatingPoint() { restoreFloatingPointMode(saved_); }
   DefaultFloatingPoint(const DefaultFloatingPoint&) = delete;
   DefaultFloatingPoint& operator=(const DefaultFloatingPoint&) = delete;
 

@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "numerics/error_bounds.h"
+#include "paths/chain_path.h"
 #include "paths/posed_vector.h"
 
 namespace fcl {
@@ -61,13 +62,22 @@ double checkedAngularSpeed(const BoundedMotion& motion, const char* name, double
 }  // namespace
 
 double AccelerationBound::ofProgram(const Vec& center, double radius) const {
+  // As checked(), so that it is the same for a motion that follows a link.
+  if (link) return link->boundOf(*this, center, radius) * kUpward;
   return checkedAcceleration(*motion, name, center, radius, t0, t1);
 }
 
 MotionPath MotionPath::bounded(const BoundedMotion& motion, const char* name) {
   MotionPath path;
+  const auto* const link = dynamic_cast<const LinkPath*>(&motion);
+  if (link && link->keptPath()) {
+    path = *link->keptPath();
+    path.name_ = name;
+    return path;
+  }
   path.kind_ = Kind::kBounded;
   path.motion_ = &motion;
+  path.link_ = link;
   path.name_ = name;
   path.stretch_ = 1 + 0x1p-39;
   path.turn_speed_ = checkedAngularSpeed(motion, name, 0, 1);
@@ -141,6 +151,7 @@ PoseRate MotionPath::boundedRate(double t) const {
 }
 
 AccelerationBound MotionPath::boundedAcceleration(double t0, double t1) const {
+  if (link_) return link_->accelerationIn(t0, t1);
   AccelerationBound bound{};
   bound.motion = motion_;
   bound.name = name_;

@@ -81,17 +81,15 @@ struct StateKey {
          !(of.turn_error < before.turn_error) && !(of.speed_error < before.speed_error);
 }
 
-/// The middle of a span, and half of its length.
-struct Middle {
-  double t, half;
-  Middle(double t0, double t1) : t(t0 + 0.5 * (t1 - t0)), half(0.5 * (t1 - t0)) {}
-};
+double middleOf(double t0, double t1) { return t0 + 0.5 * (t1 - t0); }
 
 }  // namespace
 
 ChainPath::ChainPath(std::shared_ptr<const JointTree> tree, const Pose& base,
                      std::vector<Coefficients> values)
     : tree_(std::move(tree)), base_(base), number_(nextNumber()) {
+  std::copy(base.rotation, base.rotation + 9, base_state_.rotation);
+  base_state_.translation = vecOf(base.translation);
   base_bounds_.reach = norm(base.translation);
   const auto& joints = tree_->joints();
   assert(values.size() == joints.size());
@@ -154,19 +152,11 @@ std::vector<double> ChainPath::valuesAt(double t) const {
   return values;
 }
 
-JointState ChainPath::baseState() const {
-  JointState state{};
-  std::copy(base_.rotation, base_.rotation + 9, state.rotation);
-  state.translation = vecOf(base_.translation);
-  return state;
-}
-
-JointState ChainPath::moved(const JointTree::Joint& joint, const JointState& before,
-                            const Value& value, double t) const {
+void ChainPath::move(const JointTree::Joint& joint, const JointState& before,
+                     const Value& value, double t, JointState& out) {
   const double q = valueAt(value.at, t), rate = valueAt(value.rate, t),
                acceleration = valueAt(value.acceleration, t);
   const auto& origin = joint.origin.pose;
-  JointState out = before;
   const Vec axis = rotated(before.rotation, joint.axis_in_parent);
   Vec way = rotated(before.rotation, vecOf(origin.translation));
   if (!joint.is_revolute) way = way + q * axis;
@@ -180,7 +170,9 @@ JointState ChainPath::moved(const JointTree::Joint& joint, const JointState& bef
     out.speed = out.speed + rate * axis;
     out.acceleration =
         out.acceleration + acceleration * axis + (2 * rate) * cross(before.turn, axis);
-    return out;
+    out.turn = before.turn;
+    out.turn_rate = before.turn_rate;
+    return;
   }
   const SineCosine at = sineAndOneMinusCosine(q);
   double own[9];
@@ -191,7 +183,6 @@ JointState ChainPath::moved(const JointTree::Joint& joint, const JointState& bef
   out.turn = before.turn + rate * axis;
   out.turn_rate =
       before.turn_rate + acceleration * axis + rate * cross(before.turn, axis);
-  return out;
 }
 
 void ChainPath::computeStates(double t, std::size_t count, Kept& kept) const {
@@ -201,17 +192,16 @@ void ChainPath::computeStates(double t, std::size_t count, Kept& kept) const {
   for (; kept.count < count; ++kept.count) {
     const JointTree::Joint& joint = joints[kept.count];
     assert(joint.parent < static_cast<int>(kept.count));
-    kept.states[kept.count] =
-        moved(joint,
-              joint.parent < 0 ? baseState()
-                               : kept.states[static_cast<std::size_t>(joint.parent)],
-              values_[kept.count], t);
+    move(joint,
+         joint.parent < 0 ? base_state_
+                          : kept.states[static_cast<std::size_t>(joint.parent)],
+         values_[kept.count], t, kept.states[kept.count]);
   }
 }
 
 // The thread keeps what is computed here: the mode of a caller must not get into it.
-JointState ChainPath::stateAt(int joint, double t) const {
-  if (joint < 0) return baseState();
+const JointState& ChainPath::stateAt(int joint, double t) const {
+  if (joint < 0) return base_state_;
   constexpr int kBits = 6;
   using Cache = SlotCache<StateKey, Kept, 1 << kBits>;
   thread_local const std::unique_ptr<Cache> cache(new Cache(StateKey{0, 0}));
@@ -235,7 +225,7 @@ bool LinkPath::isRevolute() const {
 
 BoundedMotion::Placement LinkPath::placementAt(double t) const {
   const DefaultFloatingPoint mode;
-  const JointState state = chain_->stateAt(joint_, t);
+  const JointState& state = chain_->stateAt(joint_, t);
   Placement out;
   multiply(state.rotation, pose_.pose.rotation, out.rotation);
   set(out.translation,
@@ -245,7 +235,7 @@ BoundedMotion::Placement LinkPath::placementAt(double t) const {
 
 BoundedMotion::Placement LinkPath::rateAt(double t) const {
   const DefaultFloatingPoint mode;
-  const JointState state = chain_->stateAt(joint_, t);
+  const JointState& state = chain_->stateAt(joint_, t);
   double rotation[9];
   multiply(state.rotation, pose_.pose.rotation, rotation);
   Placement out;
@@ -281,44 +271,65 @@ DerivativeBounds LinkPath::boundsOfBall(const Vec& center, double radius) const 
 // up to three, and of angular velocities, which are at most 2^-38 (errorOf(), and
 // largestValue()). An error of the direction of a velocity acts on all of x, the velocity
 // itself only on what is across.
+double LinkPath::boundOf(const AccelerationBound& in, const Vec& center,
+                         double radius) const {
+  const Vec x = posed(pose_.pose, center);
+  const double distance = norm(center), length = norm(x),
+               size = radius * (1 + 0x1p-39) + pose_.rotation_error * distance +
+                      pose_.translation_error + 0x1p-46 * (length + distance);
+  const DerivativeBounds whole = boundsOfBall(x, size);
+  const double error = 16 * bounds().rotation_error, half = 0.5 * (in.t1 - in.t0),
+               own = norm(rotated(in.turn, center) + vecOf(in.offset)),
+               there = own + in.turning * (size + (error + 0x1p-44) * (length + size)) +
+                       (0x1p-36 + error) * whole.second;
+  // The bound for the whole step holds in the middle of the span.
+  assert(!isTimeOfStep(middleOf(in.t0, in.t1)) ||
+         !(own > (1 + 0x1p-36 + error) * whole.second * kUpward +
+                     in.turning * (error + 0x1p-44) * (length + size) + 0x1p-500));
+  return std::min(whole.second, there + half * whole.third) * kUpward;
+}
+
+// (T + R (S x + s))'' for the link's pose (S, s) in the frame of its joint (R, T).
+AccelerationBound LinkPath::accelerationIn(double t0, double t1) const {
+  const JointState& middle = chain_->stateAt(joint_, middleOf(t0, t1));
+  AccelerationBound out{};
+  out.motion = this;
+  out.link = this;
+  out.t0 = t0;
+  out.t1 = t1;
+  out.jerk = HUGE_VAL;
+  out.turning = dot(middle.turn, middle.turn) + norm(middle.turn_rate);
+  out.per_displacement = 2 * (turnSpeedIn(t0, t1, middle) * kUpward);
+  double rotation[9], velocity[9], first[9], second[9];
+  multiply(middle.rotation, pose_.pose.rotation, rotation);
+  crossColumns(middle.turn, rotation, velocity);
+  crossColumns(middle.turn, velocity, first);
+  crossColumns(middle.turn_rate, rotation, second);
+  for (int i = 0; i < 9; ++i) out.turn[i] = first[i] + second[i];
+  const Vec arm = rotated(middle.rotation, vecOf(pose_.pose.translation));
+  set(out.offset, middle.acceleration + cross(middle.turn_rate, arm) +
+                      cross(middle.turn, cross(middle.turn, arm)));
+  return out;
+}
+
+double LinkPath::turnSpeedIn(double t0, double t1, const JointState& middle) const {
+  const DerivativeBounds& whole = bounds().rotation;
+  const double error = 0x1p-36 + 16 * bounds().rotation_error, speed = norm(middle.turn),
+               there = speed + error * whole.first + 0.5 * (t1 - t0) * whole.second;
+  assert(!isTimeOfStep(middleOf(t0, t1)) ||
+         !(speed > (1 + error) * whole.first * kUpward + 0x1p-500));
+  return std::min(whole.first, there) * kUpward;
+}
+
 double LinkPath::accelerationBound(const double (&center)[3], double radius, double t0,
                                    double t1) const {
   const DefaultFloatingPoint mode;
-  const Vec x = posed(pose_.pose, vecOf(center));
-  const double distance = norm(vecOf(center)),
-               size = radius * (1 + 0x1p-39) + pose_.rotation_error * distance +
-                      pose_.translation_error + 0x1p-46 * (norm(x) + distance);
-  const DerivativeBounds whole = boundsOfBall(x, size);
-  const Middle middle(t0, t1);
-  const JointState state = chain_->stateAt(joint_, middle.t);
-  const Vec turned = rotated(state.rotation, x);
-  const double turning = dot(state.turn, state.turn) + norm(state.turn_rate),
-               error = 16 * bounds().rotation_error;
-  const Vec own = state.acceleration + cross(state.turn_rate, turned) +
-                  cross(state.turn, cross(state.turn, turned));
-  const double there = norm(own) +
-                       turning * (size + (error + 0x1p-44) * (norm(x) + size)) +
-                       (0x1p-36 + error) * whole.second;
-  // The bound for the whole step holds in the middle of the span.
-  assert(!isTimeOfStep(middle.t) ||
-         !(norm(own) > (1 + 0x1p-36 + error) * whole.second * kUpward +
-                           turning * (error + 0x1p-44) * (norm(x) + size) + 0x1p-500));
-  return std::min(whole.second, there + middle.half * whole.third) * kUpward;
+  return boundOf(accelerationIn(t0, t1), vecOf(center), radius);
 }
 
 double LinkPath::angularSpeedBound(double t0, double t1) const {
   const DefaultFloatingPoint mode;
-  const DerivativeBounds& whole = bounds().rotation;
-  const Middle middle(t0, t1);
-  const JointState state = chain_->stateAt(joint_, middle.t);
-  const double there = norm(state.turn) +
-                       (0x1p-36 + 16 * bounds().rotation_error) * whole.first +
-                       middle.half * whole.second;
-  assert(
-      !isTimeOfStep(middle.t) ||
-      !(norm(state.turn) >
-        (1 + 0x1p-36 + 16 * bounds().rotation_error) * whole.first * kUpward + 0x1p-500));
-  return std::min(whole.first, there) * kUpward;
+  return turnSpeedIn(t0, t1, chain_->stateAt(joint_, middleOf(t0, t1)));
 }
 
 BoundedMotion::Rounding LinkPath::moreRounding() const {

@@ -24,6 +24,7 @@
 
 #include "fcl/math/motion/bounded_motion.h"
 #include "paths/joint_tree.h"
+#include "paths/motion_path.h"
 #include "paths/turning_bounds.h"
 
 namespace fcl {
@@ -72,8 +73,8 @@ class ChainPath {
   std::vector<double> valuesAt(double t) const;
 
   /// @brief The frame of a joint at t. Those before it are computed too, and the thread
-  /// keeps them: other links ask for the same times.
-  JointState stateAt(int joint, double t) const;
+  /// keeps them: other links ask for the same times. Valid until it is asked again.
+  const JointState& stateAt(int joint, double t) const;
 
  private:
   /// The joint's value and derivatives, as polynomials.
@@ -81,7 +82,6 @@ class ChainPath {
     Coefficients at, rate, acceleration;
   };
 
-  JointState baseState() const;
   /// The frames of the first joints at a time.
   struct Kept {
     std::vector<JointState> states;
@@ -90,13 +90,14 @@ class ChainPath {
 
   /// Computes frames until there are `count`.
   void computeStates(double t, std::size_t count, Kept& kept) const;
-  JointState moved(const JointTree::Joint& joint, const JointState& before,
-                   const Value& value, double t) const;
+  static void move(const JointTree::Joint& joint, const JointState& before,
+                   const Value& value, double t, JointState& out);
   JointBounds boundsOf(const JointTree::Joint& joint, const Coefficients& value) const;
 
   std::shared_ptr<const JointTree> tree_;
   Pose base_;
   std::vector<Value> values_;
+  JointState base_state_{};
   JointBounds base_bounds_{};
   std::vector<JointBounds> bounds_;
   /// Of this path: no other one of the process has it.
@@ -116,7 +117,20 @@ class LinkPath : public BoundedMotion {
   double angularSpeedBound(double t0, double t1) const override;
   Rounding moreRounding() const override;
 
+  /// @brief The bounds of a span, for many points.
+  AccelerationBound accelerationIn(double t0, double t1) const;
+  /// @brief That of the points within `radius` of a center.
+  /// @param in  what accelerationIn() gave
+  double boundOf(const AccelerationBound& in, const Vec& center, double radius) const;
+
+  /// @brief Keeps what a path of this motion has at its beginning, for the many queries
+  /// of an edge. The motion must not be moved after that.
+  void keepPath() { kept_ = std::make_shared<MotionPath>(MotionPath::bounded(*this)); }
+  /// @brief Null: it is not kept.
+  const MotionPath* keptPath() const { return kept_.get(); }
+
  private:
+  double turnSpeedIn(double t0, double t1, const JointState& middle) const;
   const JointBounds& bounds() const { return chain_->bounds(joint_); }
   bool isRevolute() const;
   DerivativeBounds boundsOfBall(const Vec& center, double radius) const;
@@ -125,6 +139,7 @@ class LinkPath : public BoundedMotion {
   int joint_;
   /// The link in the frame of the joint.
   RoundedPose pose_;
+  std::shared_ptr<const MotionPath> kept_;
 };
 
 }  // namespace deformable

@@ -14,6 +14,8 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
+class LinkPath;
+
 /// @brief Bounds on the acceleration |p''(t)| during a span of time, of all points within
 /// `radius` of a center (body frame): |turn center + offset| + per_radius radius +
 /// per_distance |center| + constant, or what a motion of the program says. If a point
@@ -34,6 +36,10 @@ struct AccelerationBound {
   const BoundedMotion* motion;
   const char* name;
   double t0, t1;
+  /// If the motion is that of a link of a chain: `turn` and `offset` are those of its
+  /// acceleration in the middle of the span, and this is how much it grows with a radius.
+  const LinkPath* link;
+  double turning;
 
   double of(const Vec& center, double radius) const;
   /// @brief The bound for all points within `radius` of a center that is anywhere on the
@@ -219,6 +225,8 @@ class MotionPath {
   double rotation_points_[4][3]{};
   // Members of a motion of the program.
   const BoundedMotion* motion_{nullptr};
+  /// The same, if it is the motion of a link of a chain.
+  const LinkPath* link_{nullptr};
   double origin_[3]{};
   BoundedMotion::Rounding more_rounding_{};
   /// Bound on |T(t) - T(0)|.
