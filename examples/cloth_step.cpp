@@ -88,6 +88,7 @@ Outcome simulate(bool responds) {
   Positions x = mesh.vertices, v(x.size(), fcl::Vector3d::Zero());
   for (std::size_t i = 0; i < cloth; ++i) v[i] = fcl::Vector3d(1, .5, -4);
   Outcome outcome;
+  contact_response::Memory memory;
   for (int step = 0; step < kSteps; ++step) {
     // What any engine does: positions that it would like to have.
     Positions next = x;
@@ -97,8 +98,8 @@ Outcome simulate(bool responds) {
     for (std::size_t i = 0; i < cloth; ++i) v[i] = .99 * (next[i] - x[i]) / kTime;
 
     if (responds) {
-      const contact_response::Report report =
-          contact_response::respond(model, options, inverse_masses, x, kTime, next, v);
+      const contact_response::Report report = contact_response::respond(
+          model, options, inverse_masses, x, kTime, next, v, &memory);
       outcome.queries += report.queries;
       outcome.stopped += report.stopped;
     }

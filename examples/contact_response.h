@@ -21,10 +21,13 @@
 #define CONTACT_RESPONSE_H
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -66,7 +69,8 @@ struct Options {
 
 struct Report {
   int queries{0};
-  /// Contacts of the motion that was proposed.
+  /// Contacts of the motion that was proposed; with a memory, after its pairs were kept
+  /// apart.
   std::size_t contacts{0};
   /// Vertices that moved in zones, and those of zones that stand still.
   std::size_t in_zones{0};
@@ -92,6 +96,30 @@ inline fcl::Vector3d roundedToFloat(const fcl::Vector3d& p) {
   return out;
 }
 
+/// The pairs of features that met in the last step. Those that are still near are kept
+/// apart before the first query of the next one, which then finds few contacts: most
+/// pairs that rest on each other do so for many steps. A part of the state of a
+/// simulation. Forget it where triangles change.
+class Memory {
+ public:
+  void forget() { pairs_.clear(); }
+
+ private:
+  template <typename BV>
+  friend class Step;
+  struct Pair {
+    fcl::ContinuousContactKind kind;
+    std::array<std::size_t, 4> vertices;
+    bool operator<(const Pair& other) const {
+      return std::tie(kind, vertices) < std::tie(other.kind, other.vertices);
+    }
+    bool operator==(const Pair& other) const {
+      return kind == other.kind && vertices == other.vertices;
+    }
+  };
+  std::vector<Pair> pairs_;
+};
+
 /// One step. `model` has the mesh of all bodies, deforming ones and obstacles.
 template <typename BV>
 class Step {
@@ -99,12 +127,13 @@ class Step {
   /// @param inverse_masses  of the vertices; 0: an obstacle, which moves as proposed
   Step(fcl::DeformableBVHModel<BV>& model, const Options& options,
        const std::vector<double>& inverse_masses, const Positions& before,
-       Positions& after)
+       Positions& after, Memory* memory = nullptr)
       : model_(model),
         options_(options),
         inverse_masses_(inverse_masses),
         before_(before),
-        after_(after) {
+        after_(after),
+        memory_(memory) {
     if (!(options.margin > 0) || !(options.min_distance >= 0) ||
         options.impulse_rounds < 0)
       throw std::invalid_argument(
@@ -123,22 +152,26 @@ class Step {
   }
 
   Report run() {
+    remember();
     for (int round = 0; round <= options_.impulse_rounds; ++round) {
       query();
       if (round == 0) report_.contacts = found_.contacts.size();
       report_.initially_crossing = found_.initially_crossing;
       report_.unresolved = found_.contacts.size();
-      if (found_.contacts.empty() || found_.initially_crossing) return report_;
-      if (round == options_.impulse_rounds) break;
+      if (found_.contacts.empty() || found_.initially_crossing) break;
+      if (round == options_.impulse_rounds) {
+        moveZones();
+        break;
+      }
       for (const auto& contact : found_.contacts) addConstraint(contact);
-      for (int i = 0; i < options_.passes; ++i)
-        for (const Constraint& constraint : constraints_) project(constraint);
+      projectAll();
     }
-    moveZones();
+    if (memory_) memory_->pairs_ = std::move(pairs_);
     return report_;
   }
 
  private:
+  using Kind = fcl::ContinuousContactKind;
   /// The first feature minus the second one at the place of the contact: the weights of
   /// their vertices, which add up to 0.
   struct Constraint {
@@ -159,9 +192,52 @@ class Step {
     request.min_distance = options_.min_distance;
     request.ignore_initially_closer = options_.min_distance > 0;
     request.num_threads = options_.num_threads;
+    if (report_.queries > 0) selectMoved(request);
+    const std::vector<fcl::ContinuousContactd> old = std::move(found_.contacts);
     found_ = {};
     fcl::continuousSelfCollide(&model_, request, found_);
+    if (report_.queries > 0) keepUnmoved(old);
+    asked_ = after_;
     ++report_.queries;
+  }
+
+  bool hasMoved(std::size_t vertex) const { return after_[vertex] != asked_[vertex]; }
+
+  /// Between two queries few vertices move. Triangles of two groups: those that have not
+  /// moved meet those that have, but not each other.
+  void selectMoved(fcl::ContinuousContactRequestd& request) const {
+    constexpr std::uint32_t kStill = 1, kMoved = 2;
+    auto &groups = request.filter1.triangle_groups,
+         &masks = request.filter1.triangle_masks;
+    const auto add = [&](bool has_moved) {
+      groups.push_back(has_moved ? kStill | kMoved : kStill);
+      masks.push_back(has_moved ? kStill | kMoved : kMoved);
+    };
+    for (int i = 0; i < model_.num_tris; ++i) {
+      const fcl::Triangle& t = model_.tri_indices[i];
+      add(hasMoved(t[0]) || hasMoved(t[1]) || hasMoved(t[2]));
+    }
+    for (std::size_t i = 0; i < model_.numFreeEdges(); ++i)
+      add(hasMoved(model_.freeEdge(i)[0]) || hasMoved(model_.freeEdge(i)[1]));
+    for (std::size_t i = 0; i < model_.numFreePoints(); ++i)
+      add(hasMoved(model_.freePoint(i)));
+  }
+
+  /// Adds the contacts of the query before whose features have not moved, and that the
+  /// last one has not found again.
+  void keepUnmoved(const std::vector<fcl::ContinuousContactd>& old) {
+    const auto has = [](const auto& list, const fcl::ContinuousContactd& contact) {
+      return std::any_of(list.begin(), list.end(), [&](const auto& other) {
+        return other.kind == contact.kind && other.vertices == contact.vertices;
+      });
+    };
+    for (const auto& contact : old) {
+      bool has_moved = false;
+      for (int k = 0; k < contact.numVertices(); ++k)
+        has_moved |= hasMoved(vertexOf(contact, k));
+      if (!has_moved && !has(found_.contacts, contact))
+        found_.contacts.push_back(contact);
+    }
   }
 
   static std::size_t vertexOf(const fcl::ContinuousContactd& contact, int k) {
@@ -177,29 +253,91 @@ class Step {
     return square > 0 ? clamped((p - a).dot(b - a) / square) : .5;
   }
 
+  static int numVerticesOf(Kind kind) {
+    if (kind == Kind::kVertexVertex) return 2;
+    return kind == Kind::kVertexEdge ? 3 : 4;
+  }
+
+  void projectAll() {
+    for (int i = 0; i < options_.passes; ++i)
+      for (const Constraint& constraint : constraints_) project(constraint);
+  }
+
+  /// The constraints of the pairs of the last step that are still near.
+  void remember() {
+    if (!memory_) return;
+    std::sort(memory_->pairs_.begin(), memory_->pairs_.end());
+    memory_->pairs_.erase(std::unique(memory_->pairs_.begin(), memory_->pairs_.end()),
+                          memory_->pairs_.end());
+    const double near = 2 * (options_.min_distance + options_.margin);
+    for (const Memory::Pair& pair : memory_->pairs_) {
+      fcl::Vector3d x[4], place;
+      for (int k = 0; k < numVerticesOf(pair.kind); ++k)
+        x[k] = before_.at(pair.vertices[static_cast<std::size_t>(k)]);
+      if (!nearestPlace(pair.kind, x, place)) continue;
+      Constraint c = constraintAt(pair, x, place);
+      c.direction = between(c, before_);
+      if (!(c.direction.norm() < near) || !finish(c)) continue;
+      constraints_.push_back(c);
+      pairs_.push_back(pair);
+    }
+    projectAll();
+  }
+
+  /// A point on one of two features, near to the other. @return false if their nearest
+  /// points are on their borders
+  static bool nearestPlace(Kind kind, const fcl::Vector3d (&x)[4], fcl::Vector3d& place) {
+    place = x[0];
+    if (kind == Kind::kVertexFace) {
+      const fcl::Vector3d n = (x[2] - x[1]).cross(x[3] - x[1]);
+      for (int k = 0; k < 3; ++k)
+        if ((x[1 + (k + 1) % 3] - x[1 + k]).cross(x[0] - x[1 + k]).dot(n) < 0)
+          return false;
+    } else if (kind == Kind::kEdgeEdge) {
+      const fcl::Vector3d u = x[1] - x[0], v = x[3] - x[2], w = x[2] - x[0],
+                          n = u.cross(v);
+      const double square = n.squaredNorm(), s = w.cross(v).dot(n), t = w.cross(u).dot(n);
+      if (!(0 <= s && s <= square && 0 <= t && t <= square && square > 0)) return false;
+      place = x[0] + (s / square) * u;
+    }
+    return true;
+  }
+
   void addConstraint(const fcl::ContinuousContactd& contact) {
-    using Kind = fcl::ContinuousContactKind;
-    Constraint c{};
-    c.size = contact.numVertices();
+    Memory::Pair pair{contact.kind, {}};
     fcl::Vector3d x[4];
-    for (int k = 0; k < c.size; ++k) {
+    for (int k = 0; k < contact.numVertices(); ++k) {
       const std::size_t v = vertexOf(contact, k);
-      c.vertex[k] = v;
+      pair.vertices[static_cast<std::size_t>(k)] = v;
       x[k] = before_[v] + contact.toc_lo * (after_[v] - before_[v]);
     }
+    Constraint c = constraintAt(pair, x, contact.pos);
+    c.direction = contact.normal.squaredNorm() > 0 ? fcl::Vector3d(-contact.normal)
+                                                   : between(c, before_);
+    if (!finish(c)) return;
+    constraints_.push_back(c);
+    pairs_.push_back(pair);
+  }
+
+  /// The weights of the vertices at a place.
+  static Constraint constraintAt(const Memory::Pair& pair, const fcl::Vector3d (&x)[4],
+                                 const fcl::Vector3d& place) {
+    Constraint c{};
+    c.size = numVerticesOf(pair.kind);
+    std::copy(pair.vertices.begin(), pair.vertices.end(), c.vertex);
     const auto setEdge = [&](int k, double sign) {
-      const double t = along(contact.pos, x[k], x[k + 1]);
+      const double t = along(place, x[k], x[k + 1]);
       c.weight[k] = sign * (1 - t);
       c.weight[k + 1] = sign * t;
     };
     c.weight[0] = 1;
-    switch (contact.kind) {
+    switch (pair.kind) {
       case Kind::kVertexFace: {
         const fcl::Vector3d n = (x[2] - x[1]).cross(x[3] - x[1]);
         double sum = 0;
         for (int k = 0; k < 3; ++k) {
           const fcl::Vector3d &p = x[1 + (k + 1) % 3], &q = x[1 + (k + 2) % 3];
-          c.weight[k + 1] = std::max(0., (q - p).cross(contact.pos - p).dot(n));
+          c.weight[k + 1] = std::max(0., (q - p).cross(place - p).dot(n));
           sum += c.weight[k + 1];
         }
         for (int k = 1; k < 4; ++k) c.weight[k] = sum > 0 ? -c.weight[k] / sum : -1 / 3.;
@@ -215,15 +353,18 @@ class Step {
       default:  // two vertices
         c.weight[1] = -1;
     }
-    const fcl::Vector3d begin = between(c, before_);
-    c.direction =
-        contact.normal.squaredNorm() > 0 ? fcl::Vector3d(-contact.normal) : begin;
-    if (!(c.direction.norm() > 0)) return;
+    return c;
+  }
+
+  /// The gap along the direction. @return false without a direction
+  bool finish(Constraint& c) const {
+    if (!(c.direction.norm() > 0)) return false;
     c.direction.normalize();
     // A pair that is nearer than it should be is pushed apart a little in each step.
-    const double wanted = options_.min_distance + options_.margin;
-    c.gap = std::min(wanted, std::max(0., c.direction.dot(begin)) + .01 * wanted);
-    constraints_.push_back(c);
+    const double wanted = options_.min_distance + options_.margin,
+                 begin = c.direction.dot(between(c, before_));
+    c.gap = std::min(wanted, std::max(0., begin) + .01 * wanted);
+    return true;
   }
 
   static fcl::Vector3d between(const Constraint& c, const Positions& positions) {
@@ -406,7 +547,12 @@ class Step {
   const Positions& before_;
   Positions& after_;
   fcl::ContinuousContactResultd found_;
+  /// The positions after the step of the last query.
+  Positions asked_;
+  Memory* memory_;
   std::vector<Constraint> constraints_;
+  /// Of the constraints.
+  std::vector<Memory::Pair> pairs_;
   std::vector<std::size_t> zone_;
   std::vector<char> is_still_;
   Report report_;
@@ -417,17 +563,20 @@ class Step {
 /// @param model  all bodies as one mesh, built; its motion is set here
 /// @param inverse_masses  of the vertices; 0: an obstacle, which moves as proposed
 /// @param time  of the step, in the unit of the velocities
+/// @param memory  of the last step; null: none
 /// @throws std::invalid_argument for numbers that do not fit, std::runtime_error for
 /// coordinates that the model refuses; positions and velocities are then as before
 template <typename BV>
 Report respond(fcl::DeformableBVHModel<BV>& model, const Options& options,
                const std::vector<double>& inverse_masses, const Positions& before,
-               double time, Positions& after, Positions& velocities) {
+               double time, Positions& after, Positions& velocities,
+               Memory* memory = nullptr) {
   if (!(time > 0)) throw std::invalid_argument("The time of a step must be above 0");
   if (velocities.size() != after.size())
     throw std::invalid_argument("Velocities: one for each vertex");
   Positions accepted = after;
-  const Report report = Step<BV>(model, options, inverse_masses, before, accepted).run();
+  const Report report =
+      Step<BV>(model, options, inverse_masses, before, accepted, memory).run();
   if (report.initially_crossing) return report;
   for (std::size_t v = 0; v < after.size(); ++v)
     if (inverse_masses[v] > 0) velocities[v] += (accepted[v] - after[v]) / time;

@@ -73,7 +73,7 @@ class ContinuousCloth {
       next[count + i] = contact_response::roundedToFloat(obstacles[i]);
     const contact_response::Report report =
         contact_response::respond(model_, options_, inverse_masses_, positions_,
-                                  static_cast<double>(time), next, velocities);
+                                  static_cast<double>(time), next, velocities, &memory_);
     for (std::size_t i = 0; i < count; ++i) {
       btSoftBody::Node& node = body_.m_nodes[static_cast<int>(i)];
       node.m_x = vectorOf(next[i]);
@@ -103,6 +103,7 @@ class ContinuousCloth {
 
   btSoftBody& body_;
   contact_response::Options options_{};
+  contact_response::Memory memory_;
   fcl::DeformableBVHModel<> model_;
   Positions positions_;
   std::vector<fcl::Triangle> triangles_;

@@ -61,6 +61,7 @@ struct MeshPair {
   const BoxShifts& shifts;
   SelfProofs proofs;
   double min_distance;
+  PairMarks marks{};
 
   bool isSelf() const { return &a == &b; }
 
@@ -80,7 +81,7 @@ class BlockTraversal {
         shift_(shifts_.shift(cull_distance_)),
         traversal_(tree_a, tree_b, shifts_.isEmpty() ? nullptr : &shift_,
                    meshes.proofs.culling(), axes, kernels(),
-                   schedule.in_order || taker.isTimed()),
+                   schedule.in_order || taker.isTimed(), meshes.marks),
         pose_displacement_(meshes.poseDisplacement()),
         schedule_(schedule),
         taker_(taker),

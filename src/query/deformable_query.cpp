@@ -12,6 +12,7 @@
 #include "query/block_traversal.h"
 #include "query/self_proofs.h"
 #include "query/surroundings.h"
+#include "query/tree_marks.h"
 #include "tree/box_position.h"
 
 namespace fcl {
@@ -42,11 +43,14 @@ class ContactQuery {
       : options_(options),
         task_options_(options),
         schedule_(options.query == ContinuousQuery::kAll ? kAllSchedule : kFirstSchedule),
-        meshes_{a, b, shifts,
+        meshes_{a,
+                b,
+                shifts,
                 &a == &b ? proveSelf(a, options.leaves_out_regions, options.min_distance,
                                      options.num_threads)
                          : SelfProofs{},
-                options.min_distance},
+                options.min_distance,
+                marksOf(a, b)},
         surroundings_(a, b),
         proof_time_(start_.seconds()) {
     if (options.min_approach_speed > 0) task_options_.surroundings = &surroundings_;
@@ -75,6 +79,17 @@ class ContactQuery {
   }
 
  private:
+  /// A tree that does not change is read as it is used, and has no marks.
+  PairMarks marksOf(const MeshInstance& a, const MeshInstance& b) {
+    if (!options_.filter || !a.tree || !b.tree) return {};
+    const auto& marks = options_.filter->rules().marks;
+    if (marks[0].areAllEqual() && marks[1].areAllEqual()) return {};
+    marks_[0] = treeMarksOf(*a.tree, marks[0]);
+    if (&a == &b) return {&marks_[0], &marks_[0]};
+    marks_[1] = treeMarksOf(*b.tree, marks[1]);
+    return {&marks_[0], &marks_[1]};
+  }
+
   NarrowPhase narrowPhase(std::size_t task) {
     return NarrowPhase(meshes_.a, meshes_.b, meshes_.shifts, task_options_, progress_,
                        task);
@@ -147,6 +162,7 @@ class ContactQuery {
   const QueryOptions options_;
   QueryOptions task_options_;
   const Schedule& schedule_;
+  TreeMarks marks_[2];
   const MeshPair meshes_;
   const Surroundings surroundings_;
   const double proof_time_;

@@ -93,6 +93,38 @@ struct SelfCulling {
   const std::uint8_t* regions{nullptr};
 };
 
+/// @brief For each triangle of a tree, and for each node, bits of groups, and of the
+/// groups that it meets.
+struct TreeMarks {
+  struct Mark {
+    std::uint32_t groups{0};
+    std::uint32_t masks{0};
+
+    void add(const Mark& other) {
+      groups |= other.groups;
+      masks |= other.masks;
+    }
+    bool meets(const Mark& other) const {
+      return (groups & other.masks) != 0 && (other.groups & masks) != 0;
+    }
+  };
+  std::vector<Mark> triangles, nodes;
+
+  /// @brief Those of a child of a node.
+  const Mark& of(const MovingKdopNode& node, int lane) const {
+    return node.isTriangle(lane)
+               ? triangles[static_cast<std::size_t>(node.triangle(lane))]
+               : nodes[static_cast<std::size_t>(node.child[lane])];
+  }
+};
+
+/// @brief The marks of both trees: pairs of which they do not meet are left out. Null:
+/// all count.
+struct PairMarks {
+  const TreeMarks* a{nullptr};
+  const TreeMarks* b{nullptr};
+};
+
 /// @brief Visits every pair of triangles whose boxes overlap at some time.
 ///
 /// @tparam TreeA, TreeB  const MovingKdopTree or RigidTreeReader
@@ -105,17 +137,20 @@ class Traversal {
   /// translations, and a distance; null for kSelf without a distance
   /// @param axes  for two rigid trees: leaves out more pairs of nodes; null: not used
   /// @param timed  as in OverlapRequest
+  /// @param marks  leaves out more pairs; both trees have them, or none
   Traversal(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift,
             const SelfCulling& culling, const SeparatingAxes* axes,
-            const Kernels& kernels, bool timed)
+            const Kernels& kernels, bool timed, const PairMarks& marks = {})
       : tree_a_(tree_a),
         tree_b_(tree_b),
         culling_(culling),
         axes_(axes),
+        marks_{marks.a, marks.b},
         kernels_(kernels),
         request_{timed},
         is_shifted_(shift != nullptr) {
     assert(kSelf || shift);
+    assert((marks.a == nullptr) == (marks.b == nullptr));
     if (shift) setShift(*shift);
   }
 
@@ -193,7 +228,13 @@ class Traversal {
   /// Adds a node with itself.
   void addSelf(std::int32_t i, WorkList& open) const {
     if (culling_.regions && culling_.regions[i]) return;
+    if (marks_[0] && !mark(false, i).meets(mark(false, i))) return;
     if (!areInFan(i, i)) open.add(0, -1, i, false, 0.f);
+  }
+
+  /// The marks of a node of tree a or tree b.
+  const TreeMarks::Mark& mark(bool of_b, std::int32_t node) const {
+    return marks_[of_b]->nodes[static_cast<std::size_t>(node)];
   }
 
   /// Whether two nodes lie in the same fan.
@@ -249,12 +290,16 @@ class Traversal {
     if (!is_triangle && (left & triangles)) {
       const MovingKdopNode& child = kSwapped ? tree_b_.node(mine) : tree_a_.node(mine);
       if (child.triangles == child.lanes()) {
-        visitTriangles<!kSwapped>(node, left & triangles, child, visit);
+        if (!marks_[0] || mark(kSwapped, mine).meets(mark(!kSwapped, j)))
+          visitTriangles<!kSwapped>(node, left & triangles, child, visit);
         left &= ~triangles;
       }
     }
     for (; left != 0; left &= left - 1) {
       const int k = lowestBit(left);
+      if (marks_[0] &&
+          !marks_[kSwapped]->of(parent, lane).meets(marks_[!kSwapped]->of(node, k)))
+        continue;
       const bool both_nodes = !is_triangle && !node.isTriangle(k);
       if (both_nodes && areInFan(mine, node.child[k])) continue;
       const float other = both_nodes ? extentOf(node, k) : 0.f;
@@ -297,6 +342,9 @@ class Traversal {
       const float earliest = pairs_.earliest[i][j];
       assert(0 <= earliest && earliest <= 1);
       assert(!kSelf || x != y);
+      if (marks_[0] && !marks_[kSwapped]->triangles[static_cast<std::size_t>(x)].meets(
+                           marks_[!kSwapped]->triangles[static_cast<std::size_t>(y)]))
+        continue;
       kSwapped ? visit(y, x, earliest) : visit(x, y, earliest);
     }
   }
@@ -305,6 +353,7 @@ class Traversal {
   TreeB& tree_b_;
   const SelfCulling culling_;
   const SeparatingAxes* axes_;
+  const TreeMarks* const marks_[2];
   const Kernels& kernels_;
   OverlapRequest request_;
   bool is_shifted_;

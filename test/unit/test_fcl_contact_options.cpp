@@ -399,7 +399,21 @@ struct RandomFilters {
       if (random.index(3) == 0) filter[k].triangle_groups.clear();
       if (random.index(3) == 0) filter[k].triangle_masks.clear();
     }
+    if (random.index(3) == 0)
+      for (std::size_t k = 0; k < 2; ++k) selectSome(random, size[k], filter[k]);
   }
+
+  /// A few triangles that follow each other meet all others, which do not meet: whole
+  /// parts of a tree are left out.
+  static void selectSome(Random& random, std::size_t size, ContinuousFilter& filter) {
+    if (size == 0) return;
+    filter.triangle_groups.assign(size, 1);
+    filter.triangle_masks.assign(size, 2);
+    const std::size_t count = 1 + size / 8, first = random.index(size - count + 1);
+    for (std::size_t i = first; i < first + count; ++i)
+      filter.triangle_groups[i] = filter.triangle_masks[i] = 3;
+  }
+
   static bool accept(const ContinuousFilter& x, std::intptr_t i,
                      const ContinuousFilter& y, std::intptr_t j) {
     const auto bits = [](const std::vector<std::uint32_t>& entries, std::uint32_t all,

@@ -181,6 +181,40 @@ TEST(FCL_CONTACT_RESPONSE, wayIsFree) {
   EXPECT_LT(20 * stopped, in_zones);
 }
 
+// Layers that fall on an obstacle and lie there: each way is free, with fewer queries if
+// the pairs of the step before are known.
+TEST(FCL_CONTACT_RESPONSE, memorySavesQueries) {
+  int queries[2] = {0, 0};
+  for (int i = 0; i < 2 * rounds(8); ++i) {
+    SCOPED_TRACE(i);
+    const bool has_memory = i % 2 == 1;
+    Random random(60 + i / 2);
+    Scene scene;
+    scene.addLayer(random, 0, true);
+    for (int layer = 1; layer < 4; ++layer) scene.addLayer(random, .06 * layer, false);
+    if (i % 4 < 2) scene.addCable(random, .3);
+    contact_response::Memory memory;
+    Positions velocities(scene.vertices.size(), V::Zero());
+    for (int step = 0; step < 12; ++step) {
+      const auto model = scene.model();
+      for (std::size_t v = 0; v < velocities.size(); ++v) {
+        if (scene.inverse_masses[v] > 0) velocities[v] -= V(0, 0, 10 * kTime);
+        scene.proposed[v] = scene.vertices[v] + kTime * velocities[v];
+      }
+      const Report report = contact_response::respond(
+          *model, optionsOf(0, 10), scene.inverse_masses, scene.vertices, kTime,
+          scene.proposed, velocities, has_memory ? &memory : nullptr);
+      ASSERT_EQ(report.unresolved, 0U);
+      const Result left = scene.found(0);
+      ASSERT_TRUE(left.contacts.empty());
+      ASSERT_FALSE(left.initially_crossing);
+      queries[has_memory] += report.queries;
+      scene.vertices = scene.proposed;
+    }
+  }
+  EXPECT_LT(queries[1], queries[0]);
+}
+
 // Where nothing stands still, impulses and zones keep the momentum; velocities change as
 // positions do.
 TEST(FCL_CONTACT_RESPONSE, momentumIsKept) {

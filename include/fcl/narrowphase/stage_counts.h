@@ -45,7 +45,8 @@ struct StageCounts {
   std::uint64_t feature_pairs{0};
   /// feature pairs whose moving boxes do not overlap, or only too late to matter
   std::uint64_t box_culled{0};
-  /// feature pairs that the filters of the request reject
+  /// feature pairs that the filters of the request reject; without those of triangles of
+  /// deforming meshes that groups and masks left out before
   std::uint64_t mask_culled{0};
   /// feature pairs that provably never become coplanar while their boxes overlap; with
   /// min_distance: those that a direction provably keeps further apart, or that do not
