@@ -63,6 +63,15 @@ if $short; then
     qemu-aarch64-static -L "$sysroot" "$build/test/unit/$test" --gtest_brief=1
   done
 else
+  # What tests call by its path.
+  for program in src/tools/fcl_ccd/fcl-ccd test/fcl_ccd_speed test/fcl_ccd_speed_error \
+    test/fcl_ccd_distances; do
+    if [ "$(head -c 2 "$build/$program")" = '#!' ]; then continue; fi
+    mv "$build/$program" "$build/$program.arm64"
+    printf '#!/bin/sh\nexec qemu-aarch64-static -L "%s" "$0.arm64" "$@"\n' "$sysroot" \
+      >"$build/$program"
+    chmod +x "$build/$program"
+  done
   ctest --test-dir "$build" -L unit -j "$jobs" --output-on-failure
 fi
 
