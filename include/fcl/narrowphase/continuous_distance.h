@@ -178,8 +178,8 @@ S distanceOfObjects(const CollisionObject<S>* o1, const Transform3<S>& tf1_end,
 /// of octrees are solid. Two free points, or a free point and a free edge, have a
 /// distance too; that they meet is no contact.
 ///
-/// Rounding is that of a query for curved paths, also where all paths are straight: about
-/// a thousand units in the last place of the coordinates. If the distance is no more, the
+/// Rounding is that of a query for curved paths, also where all paths are straight: some
+/// thousand units in the last place of the coordinates. If the distance is no more, the
 /// query asks continuousCollide() whether the objects touch. So is_collide is its answer;
 /// on straight paths it is exact. If they do not touch, distance_lo may be 0 all the
 /// same.
@@ -195,7 +195,7 @@ S distanceOfObjects(const CollisionObject<S>* o1, const Transform3<S>& tf1_end,
 /// @throws fcl::Exception  as continuousCollide(), where FCL would answer the pair, and:
 /// both objects are planes or halfspaces; abs_err, rel_err or max_distance is negative or
 /// NaN, or abs_err or rel_err is not finite; max_distance is 0; coordinates are beyond
-/// 2^160, also those of two shapes.
+/// 2^160, also those of two shapes (of a rigid mesh 2^150, of one that deforms 2^127).
 /// @return distance_lo
 /// @{
 
