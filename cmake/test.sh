@@ -4,8 +4,9 @@
 #   bash cmake/test.sh --all     also clang with -Werror and sanitizers, clang-tidy, and the
 #                                reference (CI runs this; CI=true means the same)
 #   bash cmake/test.sh --doors   only a build without vectors and threads, the examples with
-#                                engines, and every way to link the package (test/consumer),
-#                                with gcc and clang and each set of flags: an hour or more
+#                                engines, every way to link the package (test/consumer) with
+#                                gcc and clang and each set of flags, and cmake/arm64.sh
+#                                --short: an hour or more
 #   bash cmake/test.sh --compilers [COMPILER ...]
 #                                only library, program, examples, some tests and two ways to
 #                                link, with those of g++ 11 to 14 and clang++ 14, 16 and 19
@@ -137,6 +138,7 @@ if $doors; then
   for compiler in g++ clang++; do
     watched bash test/consumer/run.sh build/release "$compiler" "build/release/doors_$compiler"
   done
+  watched bash cmake/arm64.sh --short
   exit
 fi
 
