@@ -310,7 +310,7 @@ void answerCompounds(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
 
 template <typename S>
 void requireValid(const ContinuousContactRequest<S>& request) {
-  const CheckedRequest checked(request);
+  static_cast<void>(CheckedRequest(request));
 }
 
 template <typename S, typename Request>
