@@ -226,22 +226,27 @@ class Step {
   /// Adds the contacts of the query before whose features have not moved, and that the
   /// last one has not found again.
   void keepUnmoved(const std::vector<fcl::ContinuousContactd>& old) {
-    const auto has = [](const auto& list, const fcl::ContinuousContactd& contact) {
-      return std::any_of(list.begin(), list.end(), [&](const auto& other) {
-        return other.kind == contact.kind && other.vertices == contact.vertices;
-      });
-    };
+    std::vector<Memory::Pair> again;
+    for (const auto& contact : found_.contacts) again.push_back(pairOf(contact));
+    std::sort(again.begin(), again.end());
     for (const auto& contact : old) {
       bool has_moved = false;
       for (int k = 0; k < contact.numVertices(); ++k)
         has_moved |= hasMoved(vertexOf(contact, k));
-      if (!has_moved && !has(found_.contacts, contact))
+      if (!has_moved && !std::binary_search(again.begin(), again.end(), pairOf(contact)))
         found_.contacts.push_back(contact);
     }
   }
 
   static std::size_t vertexOf(const fcl::ContinuousContactd& contact, int k) {
     return static_cast<std::size_t>(contact.vertices[static_cast<std::size_t>(k)]);
+  }
+
+  static Memory::Pair pairOf(const fcl::ContinuousContactd& contact) {
+    Memory::Pair pair{contact.kind, {}};
+    for (int k = 0; k < contact.numVertices(); ++k)
+      pair.vertices[static_cast<std::size_t>(k)] = vertexOf(contact, k);
+    return pair;
   }
 
   static double clamped(double x) { return std::min(1., std::max(0., x)); }
@@ -271,9 +276,12 @@ class Step {
                           memory_->pairs_.end());
     const double near = 2 * (options_.min_distance + options_.margin);
     for (const Memory::Pair& pair : memory_->pairs_) {
+      // A mesh that has lost vertices.
+      if (*std::max_element(pair.vertices.begin(), pair.vertices.end()) >= before_.size())
+        continue;
       fcl::Vector3d x[4], place;
       for (int k = 0; k < numVerticesOf(pair.kind); ++k)
-        x[k] = before_.at(pair.vertices[static_cast<std::size_t>(k)]);
+        x[k] = before_[pair.vertices[static_cast<std::size_t>(k)]];
       if (!nearestPlace(pair.kind, x, place)) continue;
       Constraint c = constraintAt(pair, x, place);
       c.direction = between(c, before_);
@@ -304,11 +312,10 @@ class Step {
   }
 
   void addConstraint(const fcl::ContinuousContactd& contact) {
-    Memory::Pair pair{contact.kind, {}};
+    const Memory::Pair pair = pairOf(contact);
     fcl::Vector3d x[4];
     for (int k = 0; k < contact.numVertices(); ++k) {
       const std::size_t v = vertexOf(contact, k);
-      pair.vertices[static_cast<std::size_t>(k)] = v;
       x[k] = before_[v] + contact.toc_lo * (after_[v] - before_[v]);
     }
     Constraint c = constraintAt(pair, x, contact.pos);

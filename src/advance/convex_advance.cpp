@@ -320,7 +320,12 @@ double ConvexAdvance::longestStep(double t, const State& state, const ConvexGap&
   constexpr int kPlainSteps = 32;
   const double best = fixedStep(t, state, gap);
   if (++num_steps_ <= kPlainSteps || flat_ >= 0 || best >= t1_ - t) return best;
-  return std::max(best, turningStep(t, state, gap));
+  // Where it does not help it is tried more and more rarely.
+  constexpr int kMostDoublings = 6;
+  if (num_steps_ % (1 << std::min(num_in_vain_, kMostDoublings)) != 0) return best;
+  const double turning = turningStep(t, state, gap);
+  num_in_vain_ = turning > best ? 0 : num_in_vain_ + 1;
+  return std::max(best, turning);
 }
 
 // The direction n + h m goes from the one at t to that at a later time, at which the sets

@@ -52,6 +52,9 @@ class ConvexAdvance {
   /// a pair beside this one; 0: none. The answer depends on it by rounding only.
   void suggest(const Vec& direction) { suggested_ = direction; }
 
+  /// @brief The pair has taken steps before, in this span or another one.
+  void continueAfter(int num_steps) { num_steps_ = num_steps; }
+
   /// @brief The last direction that parted the sets while they were advanced; 0: none.
   const Vec& lastDirection() const { return guess_; }
 
@@ -143,6 +146,8 @@ class ConvexAdvance {
   double acceleration_{0};
   /// The steps that were taken, and how fast the nearest features turned at the last one.
   int num_steps_{0};
+  /// How many steps in turn were no longer with a direction that turns.
+  int num_in_vain_{0};
   double turn_speed_{0};
   /// How much later the direction was that this was measured by.
   double horizon_{1};

@@ -239,12 +239,9 @@ class CompoundDistance {
 
  private:
   void take(const PartPair& pair) {
-    ContinuousDistanceResult<S> one = noDistance<S>();
+    ContinuousDistanceResult<S> one;
     compounds_.ask(pair, [&](const PlacedGeometry<S>& x, const PlacedGeometry<S>& y) {
-      // Two of these have no distance, in the manager neither.
-      if (!deformable::isUnbounded(x.geometry()) ||
-          !deformable::isUnbounded(y.geometry()))
-        one = DistanceQuery<S>(x.moving(), y.moving(), request_).run();
+      one = DistanceQuery<S>(x.moving(), y.moving(), request_).run();
     });
     one.part1 = compounds_.number1(pair);
     one.part2 = compounds_.number2(pair);

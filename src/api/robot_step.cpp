@@ -111,6 +111,7 @@ template <typename S>
 class RobotStep<S>::Parts {
  public:
   Parts(const RobotBodies<S>& bodies, const ChainPathPtr& chain) : bodies_(bodies) {
+    const DefaultFloatingPoint mode;
     paths_.reserve(bodies.parts.size());
     for (const auto& part : bodies.parts) {
       paths_.emplace_back(chain, part->frame);

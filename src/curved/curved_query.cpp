@@ -257,6 +257,12 @@ class CurvedTraversal {
     return known ? known->steps : work.steps;
   }
 
+  /// The steps that the pair took before, in this span and those that it was halved from.
+  int stepsBefore(const PartWork& work) const {
+    return work.halves < 0 ? work.steps
+                           : steps_of_halves_[static_cast<std::size_t>(work.halves)];
+  }
+
   /// Whether a pair had a contact in an earlier span: only the first one counts.
   bool touchedBefore(const PartWork& work) const {
     if (!work.is_one_of_many && work.halves < 0) return false;
@@ -295,6 +301,7 @@ class CurvedTraversal {
       if (calm_.areCalmer() && work.steps == 0 && areCalmlyApart(work, end)) return;
       ConvexAdvance pair(x, y, work.start, end, tolerance_);
       pair.suggest(last_direction_);
+      pair.continueAfter(stepsBefore(work));
       if (options_.ignores_initially_closer) pair.ignoreInitiallyCloser();
       advance(work, index, end, pair);
       if (maxNorm(pair.lastDirection()) > 0) last_direction_ = pair.lastDirection();

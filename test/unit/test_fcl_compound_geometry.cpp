@@ -667,23 +667,6 @@ TEST(CompoundGeometry, ManagerTellsTheLeastDistance) {
   EXPECT_GT(num_apart, 10);
 }
 
-/// Planes and halfspaces have no distance from each other.
-TEST(CompoundGeometry, DistanceLeavesOutPairsOfPlanes) {
-  const auto plane = std::make_shared<Plane<double>>(Vector(0, 0, 1), 0.);
-  const auto tray = std::make_shared<Compound>();
-  tray->addPart(std::make_shared<Sphere<double>>(.5), at(0, 0, 3));
-  tray->addPart(plane, at(0, 0, 1));
-  const auto still =
-      std::make_shared<TranslationMotion<double>>(at(0, 0, 0), at(0, 0, 0));
-  const auto floor = makeObject(plane, still), body = makeObject(tray, still);
-  ContinuousCollisionManager<double> manager;
-  manager.registerObject(floor.get());
-  manager.registerObject(body.get());
-  ContinuousManagerDistance<double> result;
-  manager.distance(ContinuousDistanceRequest<double>(), result);
-  EXPECT_NEAR(result.result.distance_hi, 2.5, 1e-9);
-}
-
 /// One geometry in several parts, and one compound on both sides.
 TEST(CompoundGeometry, SharesGeometries) {
   const auto mesh = makeModel<Rigid>(makeIcosphere(1, .5));

@@ -185,7 +185,7 @@ TEST(FCL_CONTACT_RESPONSE, wayIsFree) {
 // the pairs of the step before are known.
 TEST(FCL_CONTACT_RESPONSE, memorySavesQueries) {
   int queries[2] = {0, 0};
-  for (int i = 0; i < 2 * rounds(8); ++i) {
+  for (int i = 0; i < 16; ++i) {
     SCOPED_TRACE(i);
     const bool has_memory = i % 2 == 1;
     Random random(60 + i / 2);

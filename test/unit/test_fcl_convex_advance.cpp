@@ -62,7 +62,7 @@ Real timeOfLeast(const Rod& a, const Rod& b) {
   int best = 0;
   for (int i = 0; i <= kSamples; ++i)
     if (inside(i * kStep) < inside(best * kStep)) best = i;
-  if (best < 3 || best > kSamples - 3 || inside(best * kStep) < kLeast) return -1;
+  if (best < 3 || best > kSamples - 3) return -1;
   Real lo = (best - 1) * kStep, hi = (best + 1) * kStep;
   for (int round = 0; round < 70; ++round) {
     const Real x = (2 * lo + hi) / 3, y = (lo + 2 * hi) / 3;
@@ -72,6 +72,7 @@ Real timeOfLeast(const Rod& a, const Rod& b) {
       lo = x;
   }
   const Real least = inside(lo), kNear = 1e-6L;
+  if (least < kLeast) return -1;
   if (!(least <= inside(lo - kNear)) || inside(lo - kNear) > 2) return -1;
   if (!(least <= inside(lo + kNear)) || inside(lo + kNear) > 2) return -1;
   for (int i = 0; i <= kSamples; ++i)

@@ -189,9 +189,6 @@ S distanceOfObjects(const CollisionObject<S>* o1, const Transform3<S>& tf1_end,
 /// up to 2^-10 only; or in float, if an object goes further than the tolerance between
 /// two times that are floats. distance_lo and distance_hi are right all the same.
 ///
-/// Of two compounds, parts that are both planes or halfspaces are left out, also if they
-/// touch.
-///
 /// @throws fcl::Exception  as continuousCollide(), where FCL would answer the pair, and:
 /// both objects are planes or halfspaces; abs_err, rel_err or max_distance is negative or
 /// NaN, or abs_err or rel_err is not finite; max_distance is 0; coordinates are beyond
