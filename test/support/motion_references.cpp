@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "fcl/narrowphase/distance.h"
@@ -18,6 +19,7 @@ using Kind = ReferenceMotion::Kind;
 /// No contact.
 constexpr double kNever = 2;
 constexpr double kTocErr = 1e-4;
+const Real kInfinity = std::numeric_limits<Real>::infinity();
 
 Real clampedUnit(Real x) { return std::min(std::max(x, Real{0}), Real{1}); }
 
@@ -32,8 +34,8 @@ Real pointToEdge(const RealVector& p, const RealVector& q, const RealVector& r) 
 Real pointToInside(const RealVector& p, const RealVector (&f)[3]) {
   const RealVector n = (f[1] - f[0]).cross(f[2] - f[0]);
   for (int k = 0; k < 3; ++k)
-    if (n.dot((f[(k + 1) % 3] - f[k]).cross(p - f[k])) < 0) return HUGE_VALL;
-  return n.norm() > 0 ? std::abs(n.dot(p - f[0])) / n.norm() : HUGE_VALL;
+    if (n.dot((f[(k + 1) % 3] - f[k]).cross(p - f[k])) < 0) return kInfinity;
+  return n.norm() > 0 ? abs(n.dot(p - f[0])) / n.norm() : kInfinity;
 }
 
 /// The distance of two edges: at an end of one of them, or between the insides of both.
@@ -46,7 +48,7 @@ Real edgeToEdge(const RealVector& p, const RealVector& q, const RealVector& r,
   if (!(square > 0)) return ends;
   const Real x = w.cross(v).dot(n) / square, y = w.cross(u).dot(n) / square;
   const bool inside = x >= 0 && x <= 1 && y >= 0 && y <= 1;
-  return inside ? std::min(ends, std::abs(w.dot(n)) / std::sqrt(square)) : ends;
+  return inside ? std::min(ends, abs(w.dot(n)) / sqrt(square)) : ends;
 }
 
 /// Bound on the velocity of points within `reach` of the origin of the body.
@@ -110,7 +112,7 @@ ReferenceMotion motionOfKind(Random& random, Kind kind) {
 }  // namespace
 
 Real triangleDistance(const RealVector (&a)[3], const RealVector (&b)[3]) {
-  Real least = HUGE_VALL;
+  Real least = kInfinity;
   for (int i = 0; i < 3; ++i) {
     least = std::min({least, pointToInside(a[i], b), pointToInside(b[i], a)});
     for (int j = 0; j < 3; ++j)
@@ -126,7 +128,7 @@ bool doTrianglesCross(const RealVector (&a)[3], const RealVector (&b)[3]) {
     const Real from = n.dot(p - f[0]), to = n.dot(q - f[0]);
     if ((from > 0) == (to > 0)) return false;
     const RealVector at = p + (from / (from - to)) * (q - p);
-    return pointToInside(at, f) < HUGE_VALL;
+    return pointToInside(at, f) < kInfinity;
   };
   for (int k = 0; k < 3; ++k)
     if (passes(a[k], a[(k + 1) % 3], b) || passes(b[k], b[(k + 1) % 3], a)) return true;
@@ -192,7 +194,7 @@ struct Turned {
   Turned(const RealVector& axis, const RealVector& from)
       : still(axis * axis.dot(from)), across(from - still), beside(axis.cross(from)) {}
   RealVector at(Real angle) const {
-    return still + std::cos(angle) * across + std::sin(angle) * beside;
+    return still + cos(angle) * across + sin(angle) * beside;
   }
   RealVector still, across, beside;
 };
@@ -211,9 +213,9 @@ struct Harmonic {
   void forEachRoot(Real most, Visit&& visit) const {
     const Real square = a - b, root = c * c - (a - b) * (a + b);
     if (root < 0) return;
-    const Real q = -(c + std::copysign(std::sqrt(root), c));
-    for (const Real u : {q / square, (a + b) / q}) {
-      const Real v = 2 * std::atan(u);
+    const Real q = -(c + copysign(sqrt(root), c));
+    for (const Real& u : {q / square, (a + b) / q}) {
+      const Real v = 2 * atan(u);
       if (v >= 0 && v <= most) visit(v);
     }
   }
@@ -231,7 +233,7 @@ struct TurningPair {
 
   /// The first angle at which the triangles touch; infinite if they do not.
   Real firstContact() const {
-    Real first = HUGE_VALL;
+    Real first = kInfinity;
     const auto vertexFace = [&](const RealVector& p, const RealVector(&f)[3],
                                 const RealVector& about) {
       Harmonic volume;
@@ -240,7 +242,7 @@ struct TurningPair {
       const Turned x(about, p);
       volume.add(n, x);
       volume.forEachRoot(angle, [&](Real v) {
-        if (pointToInside(x.at(v), f) < HUGE_VALL) first = std::min(first, v);
+        if (pointToInside(x.at(v), f) < kInfinity) first = std::min(first, v);
       });
     };
     for (int k = 0; k < 3; ++k) {
@@ -280,16 +282,16 @@ TestMesh meshOf(const RealVector (&corner)[3]) {
 void graze(Random& random, TurningPair& pair) {
   RealVector toward = randomDirection(random).cast<Real>();
   if (random.index(2)) toward = pair.axis.cross(toward).normalized();
-  Real reach = -HUGE_VALL;
+  Real reach = -kInfinity;
   for (const auto& corner : pair.turning) {
     const Turned x(pair.axis, corner);
     const Real across = toward.dot(x.across), beside = toward.dot(x.beside),
-               peak = std::atan2(beside, across);
-    for (const Real v : {Real{0}, pair.angle, peak})
+               peak = atan2(beside, across);
+    for (const Real& v : {Real{0}, pair.angle, peak})
       if (v >= 0 && v <= pair.angle) reach = std::max(reach, toward.dot(x.at(v)));
   }
-  const Real depth = (random.index(2) ? 1 : -1) *
-                     std::pow(Real{10}, -static_cast<Real>(2 + random.index(5)));
+  const Real depth =
+      (random.index(2) ? 1 : -1) * pow(Real{10}, -static_cast<Real>(2 + random.index(5)));
   const RealVector side = toward.unitOrthogonal(), other = toward.cross(side),
                    center = (reach - depth) * toward;
   const RealVector corners[3] = {center - 9 * side - 9 * other, center + 18 * side,
@@ -325,7 +327,7 @@ std::string turnDisagreement(std::uint64_t number, MotionTally& tally) {
   tally.contacts += toc <= 1;
   tally.sampled += first <= 1;
   // Triangles that cross at the beginning may touch again later.
-  if (first <= 1 && toc > first * (1 + 1e-15L) + 1e-15L / pair.angle)
+  if (first <= 1 && toc > first * (1 + Real{1e-15L}) + 1e-15L / pair.angle)
     return complaint("late: ", toc, " instead of ", static_cast<double>(first));
   if (toc <= 1) {
     RealVector then[3];

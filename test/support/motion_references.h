@@ -15,10 +15,10 @@
 namespace fcl {
 namespace test {
 
-/// @brief The distance of two triangles that do not cross, in long double.
+/// @brief The distance of two triangles that do not cross, in Real.
 Real triangleDistance(const RealVector (&a)[3], const RealVector (&b)[3]);
 
-/// @brief Whether an edge of one triangle passes through the other, in long double.
+/// @brief Whether an edge of one triangle passes through the other, in Real.
 bool doTrianglesCross(const RealVector (&a)[3], const RealVector (&b)[3]);
 
 /// @brief A time before which two bodies are provably apart: conservative advancement by
@@ -46,7 +46,7 @@ std::string spanDisagreement(std::uint64_t number, MotionTally& tally);
 
 /// @brief Case `number` of two triangles, of which one turns about a fixed axis and the
 /// other rests. For vertex and face, and for two edges, the volume is A + B cos(v) + C
-/// sin(v), of degree 2 in tan(v / 2): its roots in closed form, in long double, are the
+/// sin(v), of degree 2 in tan(v / 2): its roots in closed form, in Real, are the
 /// reference. Half of the cases graze: they hit as deep, or pass at a distance, of 1e-2
 /// to 1e-6.
 /// @return what is wrong; empty if nothing

@@ -134,7 +134,7 @@ constexpr int kSamples = 512;
 
 /// The least value near a low sample, by golden sections.
 Real refined(const std::function<Real(Real)>& f, Real lo, Real hi) {
-  const Real golden = (std::sqrt(Real{5}) - 1) / 2;
+  const Real golden = (sqrt(Real{5}) - 1) / 2;
   Real x = hi - golden * (hi - lo), y = lo + golden * (hi - lo), at_x = f(x), at_y = f(y),
        least = std::min({f(lo), f(hi), at_x, at_y});
   for (int i = 0; i < 40; ++i) {
@@ -215,23 +215,25 @@ double grazing(Real least, Random& random) {
 std::string compared(const std::function<Real(Real)>& distance, const Samples& samples,
                      Real wanted, const Answer& answer, PathTally& tally) {
   const auto [is_collide, time] = answer;
-  constexpr Real kTolerance = 1e-11L;
+  const Real tolerance = 1e-11L;
   const Real first = samples.firstBelow(distance, wanted);
   ++(is_collide ? tally.contacts : tally.misses);
   const auto tell = [&, at = time](const char* what) {
     char text[200];
     std::snprintf(text, sizeof text,
-                  "%s: time %.17g, first sample %.17Lg, distance then %Lg, at least %Lg",
-                  what, at, first, distance(at) - wanted, samples.least - wanted);
+                  "%s: time %.17g, first sample %.17g, distance then %g, at least %g",
+                  what, at, static_cast<double>(first),
+                  static_cast<double>(distance(at) - wanted),
+                  static_cast<double>(samples.least - wanted));
     return std::string(text);
   };
-  if (samples.least < wanted - kTolerance && !is_collide) return tell("missed");
-  if (samples.least > wanted + kTolerance && is_collide) return tell("invented");
+  if (samples.least < wanted - tolerance && !is_collide) return tell("missed");
+  if (samples.least > wanted + tolerance && is_collide) return tell("invented");
   if (!is_collide) return {};
   if (time > first + 1e-15L) return tell("late");
   // Within the tolerance and toc_err of touching.
-  const Real speed = (distance(time + 1e-7L) - distance(time)) / 1e-7L;
-  if (time > 0 && distance(time) > wanted + kTolerance + 4e-9L * std::abs(speed))
+  const Real speed = (distance(Real{time} + 1e-7L) - distance(time)) / 1e-7L;
+  if (time > 0 && distance(time) > wanted + tolerance + 4e-9L * abs(speed))
     return tell("early");
   return {};
 }

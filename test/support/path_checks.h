@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Motion classes of the library against their exact paths in long double: rounding,
+// Motion classes of the library against their exact paths in Real: rounding,
 // bounds, and queries against dense samples.
 #ifndef FCL_TEST_SUPPORT_PATH_CHECKS_H
 #define FCL_TEST_SUPPORT_PATH_CHECKS_H
@@ -61,7 +61,7 @@ int pathCases(int count);
 std::string ballDisagreement(const MotionBase<double>& motion, const ExactPath& exact,
                              Random& random, PathTally& tally);
 
-/// @brief The same for two triangles, at distances and crossings in long double.
+/// @brief The same for two triangles, at distances and crossings in Real.
 std::string triangleDisagreement(const MotionBase<double>& motion, const ExactPath& exact,
                                  Random& random, PathTally& tally);
 

@@ -1,22 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Motions by textbook formulas in long double, for comparison with the library's.
+// Motions by textbook formulas in Real, for comparison with the library's.
 #ifndef FCL_TEST_SUPPORT_REFERENCE_MOTION_H
 #define FCL_TEST_SUPPORT_REFERENCE_MOTION_H
-
-#include <cmath>
 
 #include "fcl/common/types.h"
 #include "mesh_generators.h"
 #include "paths/motion_path.h"
 #include "random_direction.h"
+#include "real.h"
 
 namespace fcl {
 namespace test {
-
-using Real = long double;
-using RealVector = Eigen::Matrix<Real, 3, 1>;
-using RealMatrix = Eigen::Matrix<Real, 3, 3>;
 
 struct RealPose {
   RealMatrix rotation;
@@ -129,10 +124,10 @@ struct ReferenceMotion {
       // About the axis: a triangle with the angles w t / 2 and w (1 - t) / 2.
       const RealVector way = t1 - t0, across = way - a * a.dot(way);
       const Real half = static_cast<Real>(angle) / 2;
-      const Real part = std::sin(half * t) / std::sin(half);
+      const Real part = sin(half * t) / sin(half);
       pose.translation = t0 + a * (a.dot(way) * t) +
-                         across * (part * std::cos(half * (1 - t))) -
-                         a.cross(across) * (part * std::sin(half * (1 - t)));
+                         across * (part * cos(half * (1 - t))) -
+                         a.cross(across) * (part * sin(half * (1 - t)));
     }
     return pose;
   }

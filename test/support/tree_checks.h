@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "real.h"
 #include "sanitizer.h"
 #include "tree/border_finder.h"
 #include "tree/moving_kdop_tree.h"
@@ -41,26 +42,24 @@ using detail::deformable::VertexPath;
 
 constexpr double kTimes[] = {0, 1e-9, 0.125, 1. / 3, 0.5, 0.7, 0.9375, 1};
 
-/// The 8 coordinates of a vertex at t, relative to origins of both frames, with 11 bits
-/// more than double.
+/// The 8 coordinates of a vertex at t, relative to origins of both frames, in Real.
 inline void coordinatesAt(const VertexPath& p, double t, const double (&origin0)[3],
-                          const double (&origin1)[3], long double (&d)[8]) {
-  long double x[3];
+                          const double (&origin1)[3], Real (&d)[8]) {
+  Real x[3];
   for (int k = 0; k < 3; ++k)
-    x[k] = (1 - static_cast<long double>(t)) *
-               (static_cast<long double>(p.t0[k]) - origin0[k]) +
-           static_cast<long double>(t) * (static_cast<long double>(p.t1[k]) - origin1[k]);
-  const long double all[8] = {x[0],        x[1],        x[2],        x[0] + x[1],
-                              x[0] + x[2], x[1] + x[2], x[0] - x[1], x[0] - x[2]};
+    x[k] = (1 - Real{t}) * (Real{p.t0[k]} - origin0[k]) +
+           Real{t} * (Real{p.t1[k]} - origin1[k]);
+  const Real all[8] = {x[0],        x[1],        x[2],        x[0] + x[1],
+                       x[0] + x[2], x[1] + x[2], x[0] - x[1], x[0] - x[2]};
   std::copy(all, all + 8, d);
 }
 
 /// The bound of half-axis j at t; infinity at one end means no bound.
-inline long double halfAt(const detail::deformable::MovingKdop& box, int j, double t) {
+inline Real halfAt(const detail::deformable::MovingKdop& box, int j, double t) {
   constexpr float kInf = std::numeric_limits<float>::infinity();
   const float half0 = box.t0.half[j], half1 = box.t1.half[j];
   if (half0 == kInf || half1 == kInf) return kInf;
-  return (1 - static_cast<long double>(t)) * half0 + static_cast<long double>(t) * half1;
+  return (1 - Real{t}) * half0 + Real{t} * half1;
 }
 
 /// The parent of a node, and the node's lane there.
@@ -139,7 +138,7 @@ inline std::vector<Place> expectStructure(const MovingKdopTree& tree,
 /// Whether the box contains the vertex at t.
 inline void expectContained(const VertexPath& path, double t, const MovingKdopTree& tree,
                             const detail::deformable::MovingKdop& box) {
-  long double d[8];
+  Real d[8];
   coordinatesAt(path, t, tree.origin(0), tree.origin(1), d);
   for (int j = 0; j < 8; ++j) {
     ASSERT_LE(-d[j], halfAt(box, j, t)) << "half-axis " << j << " at " << t;
@@ -150,9 +149,8 @@ inline void expectContained(const VertexPath& path, double t, const MovingKdopTr
 /// The displacement is a bound on the change of each coordinate. It is not much larger,
 /// as long as a float can represent it.
 inline void expectBounded(const VertexPath& path, double displacement, bool is_least) {
-  long double moved = 0;
-  for (int k = 0; k < 3; ++k)
-    moved = std::max(moved, std::abs(static_cast<long double>(path.t1[k]) - path.t0[k]));
+  Real moved = 0;
+  for (int k = 0; k < 3; ++k) moved = std::max(moved, abs(Real{path.t1[k]} - path.t0[k]));
   ASSERT_LE(moved, displacement);
   if (is_least && moved <= 0x1p127L) {
     ASSERT_LE(displacement, moved * (1 + 0x1p-21L) + 2 * FLT_MIN);

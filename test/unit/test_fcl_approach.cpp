@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Pairs that are nearer than min_distance at t = 0 and are ignored then: contacts only of
-// what comes nearer, against distances in long double at many times.
+// what comes nearer, against distances in Real at many times.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,6 +20,7 @@
 #include "fcl/narrowphase/continuous_collision.h"
 #include "fcl/narrowphase/continuous_features.h"
 #include "moving_mesh.h"
+#include "real.h"
 #include "sanitizer.h"
 #include "test_models.h"
 
@@ -41,41 +42,39 @@ using detail::deformable::Vec;
 using detail::deformable::VertexPath;
 using Request = detail::deformable::DistanceRequest;
 using Kind = ContinuousContactKind;
-using Wide = long double;
-using WideVector = Eigen::Matrix<Wide, 3, 1>;
 template <typename S>
 using ModelOf = DeformableBVHModel<OBBRSS<S>>;
 
 /// Of a point and a segment.
-Wide distanceOf(const WideVector& x, const WideVector& from, const WideVector& to) {
-  const WideVector way = to - from;
-  const Wide square = way.squaredNorm(), along = square > 0 ? way.dot(x - from) : 0;
-  const Wide share =
-      square > 0 ? std::min(std::max(along / square, Wide(0)), Wide(1)) : 0;
+Real distanceOf(const RealVector& x, const RealVector& from, const RealVector& to) {
+  const RealVector way = to - from;
+  const Real square = way.squaredNorm(), along = square > 0 ? way.dot(x - from) : 0;
+  const Real share =
+      square > 0 ? std::min(std::max(along / square, Real(0)), Real(1)) : 0;
   return (x - (from + share * way)).norm();
 }
 
 /// Of two features, as the distance of two points of them: where rounding hides which
 /// points are nearest it is too large, never too small.
-Wide distanceAt(Kind kind, const FeaturePoints& x, Wide t) {
-  WideVector p[4];
+Real distanceAt(Kind kind, const FeaturePoints& x, Real t) {
+  RealVector p[4];
   for (int i = 0; i < 4 && x.point[i]; ++i)
     for (int k = 0; k < 3; ++k) p[i][k] = (1 - t) * x[i].t0[k] + t * x[i].t1[k];
   if (kind == Kind::kVertexVertex) return (p[1] - p[0]).norm();
   if (kind == Kind::kVertexEdge) return distanceOf(p[0], p[1], p[2]);
   const bool is_face = kind == Kind::kVertexFace;
-  const Wide best =
+  const Real best =
       is_face ? std::min({distanceOf(p[0], p[1], p[2]), distanceOf(p[0], p[2], p[3]),
                           distanceOf(p[0], p[3], p[1])})
               : std::min({distanceOf(p[0], p[2], p[3]), distanceOf(p[1], p[2], p[3]),
                           distanceOf(p[2], p[0], p[1]), distanceOf(p[3], p[0], p[1])});
   // The points w + along u + across v, and of these the nearest one to the origin.
-  const WideVector u = is_face ? p[2] - p[1] : p[0] - p[1],
+  const RealVector u = is_face ? p[2] - p[1] : p[0] - p[1],
                    v = is_face ? p[3] - p[1] : p[3] - p[2],
                    w = is_face ? p[1] - p[0] : p[2] - p[0], n = u.cross(v);
-  const Wide square = n.squaredNorm();
+  const Real square = n.squaredNorm();
   if (!(square > 0)) return best;
-  const Wide along = v.cross(w).dot(n) / square, across = w.cross(u).dot(n) / square;
+  const Real along = v.cross(w).dot(n) / square, across = w.cross(u).dot(n) / square;
   const bool is_inside =
       along > 0 && across > 0 && (is_face ? along + across < 1 : along < 1 && across < 1);
   return is_inside ? std::min(best, (w + along * u + across * v).norm()) : best;
@@ -94,7 +93,7 @@ void expectApproach(Kind kind, const FeaturePoints& x, const Request& request,
   constexpr double kShare = 4 * DistanceTolerance::kShare;
   const DistanceContact found = advanceToDistance(kind, x, request);
   EXPECT_FALSE(found.is_given_up);
-  const Wide start = distanceAt(kind, x, 0);
+  const Real start = distanceAt(kind, x, 0);
   const double size = DifferencePolygon(kind, x).size(),
                rounding = 4 * DistanceTolerance::kTouching * (request.distance + size);
   if (start <= rounding) return;  // they touch
@@ -105,9 +104,9 @@ void expectApproach(Kind kind, const FeaturePoints& x, const Request& request,
     EXPECT_LT(distanceAt(kind, x, found.toc_lo), start);
   }
   // Many times early in the step, where the first contact matters most.
-  const Wide least = start * (1 - kShare) - rounding;
+  const Real least = start * (1 - kShare) - rounding;
   for (int i = 0; i < kSamples; ++i) {
-    const Wide t = i < 30 ? Wide(i + 1) / 30 : std::ldexp(Wide(1), 4 * (29 - i));
+    const Real t = i < 30 ? Real(i + 1) / 30 : ldexp(Real(1), 4 * (29 - i));
     if (!(distanceAt(kind, x, t) < least)) continue;
     EXPECT_TRUE(found.is_contact && found.toc_lo <= t);
   }
@@ -446,7 +445,7 @@ TEST(FCL_APPROACH, accurateDirections) {
                                       polygon.size(), least, 1);
     EXPECT_TRUE(0 <= step && step <= 1);
     for (int s = 1; s <= 8; ++s)
-      EXPECT_GT(distanceAt(kind, points, Wide(step) * s / 8), d);
+      EXPECT_GT(distanceAt(kind, points, Real(step) * s / 8), d);
     steps += step > 0;
     long_steps += step > 1e-3;
     if (HasFailure()) return;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "mesh_generators.h"
+#include "real.h"
 #include "tree/box_position.h"
 
 namespace fcl {
@@ -18,7 +19,6 @@ namespace test {
 namespace {
 
 using namespace fcl::detail::deformable;
-using Real = long double;
 
 /// A point at t = 0 and t = 1, and where it is in between.
 struct BentPath {
@@ -55,7 +55,7 @@ Bend randomBend(Random& random, int i, double size) {
 Real mostOutside(const MovingKdop& box, const double (&origin)[2][3],
                  const BentPath& path, const Bend& bend) {
   constexpr int kTimes = 16;
-  Real most = -HUGE_VALL;
+  Real most = -std::numeric_limits<Real>::infinity();
   for (int i = 0; i <= kTimes; ++i) {
     const double t = double(i) / kTimes;
     Real x[3], d[8];
@@ -140,7 +140,7 @@ TEST(FCL_BENT_BOXES, nodesContainTheBentPaths) {
     for (int k = 0; k < 3; ++k) bound += std::abs(at[0][k]) + std::abs(at[1][k]);
     const double rounding = 0x1p-50 * (bound + scene.size);
     for (int lane = 0; lane < MovingKdopNode::kWidth; ++lane) {
-      Real most = -HUGE_VALL;
+      Real most = -std::numeric_limits<Real>::infinity();
       for (const BentPath& path : scene.inWorld(lane))
         most = std::max(most, mostOutside(node.box(lane), at, path, scene.bend));
       ASSERT_LE(most, rounding) << "scene " << i << ", lane " << lane;
@@ -175,7 +175,7 @@ TEST(FCL_BENT_BOXES, verticesContainTheirBentPaths) {
     path.at(0.5, scene.bend, middle);
     path.at(0.5, Bend{}, straight);
     Real bend = 0;
-    for (int k = 0; k < 3; ++k) bend += std::abs(middle[k] - straight[k]);
+    for (int k = 0; k < 3; ++k) bend += abs(middle[k] - straight[k]);
     for (int j = 0; j < 8; ++j)
       EXPECT_LE(Real{vertex.box.t0.half[j]} + vertex.box.t0.half[j + 8],
                 bend + 1e-5 * scene.size)

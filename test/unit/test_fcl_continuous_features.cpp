@@ -13,6 +13,7 @@
 
 #include "elementary/exact.h"
 #include "feature_test_calls.h"
+#include "real.h"
 #include "test_models.h"
 
 #if defined(__SSE2__)
@@ -39,8 +40,8 @@ TYPED_TEST(ContinuousFeatureTest, ReadsAsInTheLiterature) {
   // A vertex falls through the triangle at a third of the step.
   auto result = vertexFace(V(1, 1, 1), f0, f1, f2, V(1, 1, -2), f0, f1, f2, 1e-6);
   EXPECT_TRUE(result.is_contact);
-  EXPECT_LE(3 * static_cast<long double>(result.toc_lo), 1);
-  EXPECT_GE(3 * static_cast<long double>(result.toc_hi), 1);
+  EXPECT_LE(3 * Real{result.toc_lo}, 1);
+  EXPECT_GE(3 * Real{result.toc_hi}, 1);
   EXPECT_LE(result.toc_hi - result.toc_lo, 2e-6);
   // The triangle rises against the vertex, which rests: points at t = 0 come first.
   const V up(0, 0, 2), v(1, 1, 1);

@@ -36,8 +36,8 @@ Real distanceInside(const Rod& a, const Rod& b, Real t) {
   if (!(square > 0.01L)) return 9;
   // w + y v - x u is parallel to n.
   const Real x = w.cross(v).dot(n) / square, y = w.cross(u).dot(n) / square;
-  if (std::abs(x) > 0.9L || std::abs(y) > 0.9L) return 9;
-  return std::abs(w.dot(n)) / std::sqrt(square);
+  if (abs(x) > 0.9L || abs(y) > 0.9L) return 9;
+  return abs(w.dot(n)) / sqrt(square);
 }
 
 /// The least distance of an end of a rod from the other one.
@@ -57,13 +57,13 @@ Real distanceOfEnds(const Rod& a, const Rod& b, Real t) {
 /// and clearly further apart at other times; negative if not.
 Real timeOfLeast(const Rod& a, const Rod& b) {
   constexpr int kSamples = 32;
-  constexpr Real kStep = 1.L / kSamples, kClearly = 0.02L, kLeast = 0.05L;
+  const Real step = 1.L / kSamples, clearly = 0.02L, too_near = 0.05L;
   const auto inside = [&](Real t) { return distanceInside(a, b, t); };
   int best = 0;
   for (int i = 0; i <= kSamples; ++i)
-    if (inside(i * kStep) < inside(best * kStep)) best = i;
+    if (inside(i * step) < inside(best * step)) best = i;
   if (best < 3 || best > kSamples - 3) return -1;
-  Real lo = (best - 1) * kStep, hi = (best + 1) * kStep;
+  Real lo = (best - 1) * step, hi = (best + 1) * step;
   for (int round = 0; round < 70; ++round) {
     const Real x = (2 * lo + hi) / 3, y = (lo + 2 * hi) / 3;
     if (inside(x) < inside(y))
@@ -71,14 +71,14 @@ Real timeOfLeast(const Rod& a, const Rod& b) {
     else
       lo = x;
   }
-  const Real least = inside(lo), kNear = 1e-6L;
-  if (least < kLeast) return -1;
-  if (!(least <= inside(lo - kNear)) || inside(lo - kNear) > 2) return -1;
-  if (!(least <= inside(lo + kNear)) || inside(lo + kNear) > 2) return -1;
+  const Real least = inside(lo), near = 1e-6L;
+  if (least < too_near) return -1;
+  if (!(least <= inside(lo - near)) || inside(lo - near) > 2) return -1;
+  if (!(least <= inside(lo + near)) || inside(lo + near) > 2) return -1;
   for (int i = 0; i <= kSamples; ++i)
-    if (std::abs(i - best) > 2 && inside(i * kStep) < least + kClearly) return -1;
+    if (std::abs(i - best) > 2 && inside(i * step) < least + clearly) return -1;
   for (int i = 0; i <= kSamples; ++i)
-    if (distanceOfEnds(a, b, i * kStep) < least + kClearly) return -1;
+    if (distanceOfEnds(a, b, i * step) < least + clearly) return -1;
   return lo;
 }
 

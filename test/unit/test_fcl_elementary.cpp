@@ -20,6 +20,7 @@
 #include "feature_pair_generators.h"
 #include "query_generators.h"
 #include "rational_geometry.h"
+#include "real.h"
 #include "sanitizer.h"
 
 namespace fcl {
@@ -33,6 +34,7 @@ using test::MovingPair;
 using test::onTriangle;
 using test::path;
 using test::Random;
+using test::Real;
 
 constexpr ContinuousContactKind kVf = ContinuousContactKind::kVertexFace,
                                 kEe = ContinuousContactKind::kEdgeEdge;
@@ -214,12 +216,12 @@ const std::vector<Case>& cases() {
   return list;
 }
 
-/// The bracket contains the time and is as narrow as promised. The long doubles are exact
-/// for these fractions.
+/// The bracket contains the time and is as narrow as promised. Real is exact for
+/// these fractions.
 void expectTime(const Case& c, const ElementaryResult& r, double toc_err) {
   ASSERT_EQ(r.answer, c.denominator ? Answer::kYes : Answer::kNo);
   if (!c.denominator) return;
-  const long double n = c.numerator, d = c.denominator;
+  const Real n = c.numerator, d = c.denominator;
   EXPECT_LE(r.toc_lo * d, n);
   EXPECT_GE(r.toc_hi * d, n);
   EXPECT_LE(r.toc_hi - r.toc_lo, std::max(toc_err, 4 * DBL_EPSILON));
@@ -853,7 +855,7 @@ TEST(FCL_ELEMENTARY_TEST, bracketOfASubnormalTimeIsRoundedOutward) {
     ASSERT_EQ(r.answer, Answer::kYes);
     // z(t) from its values at the ends, up to factors: z0 + t (z1 - z0), with z0
     // negligible in comparison with z1.
-    const long double root = static_cast<long double>(z0) / -static_cast<long double>(z1);
+    const Real root = Real{z0} / -Real{z1};
     ASSERT_LE(r.toc_lo, root) << pair;
     ASSERT_GE(r.toc_hi, root) << pair;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Motions of the links of a chain of joints, against products of textbook rotations in
-// long double. FCL_CCD_TEST_PATHS makes the series so many times as long:
+// Real. FCL_CCD_TEST_PATHS makes the series so many times as long:
 //   FCL_CCD_TEST_PATHS=10 build/release/test/unit/test_fcl_joint_chain
 #include "fcl/math/motion/joint_chain.h"
 

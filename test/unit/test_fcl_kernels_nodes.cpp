@@ -22,6 +22,7 @@
 #include "offset_pad.h"
 #include "query/leading_contact.h"
 #include "random_boxes.h"
+#include "real.h"
 #include "tree/box_position.h"
 
 namespace fcl {
@@ -40,6 +41,7 @@ using test::randomBounds;
 using test::randomGap;
 using test::randomHalves;
 using test::randomScale;
+using test::Real;
 using test::shifted;
 
 constexpr int kWidth = MovingKdopNode::kWidth;
@@ -362,7 +364,7 @@ bool areApartExactly(const detail::deformable::MovingKdop& a,
   const auto depth = [](const detail::deformable::Kdop16& x,
                         const detail::deformable::Kdop16& y,
                         const detail::deformable::Kdop16& added, int j) {
-    return static_cast<long double>(x.half[j]) + y.half[j ^ 8] + added.half[j];
+    return Real{x.half[j]} + y.half[j ^ 8] + added.half[j];
   };
   for (int j = 0; j < 16; ++j)
     if (depth(a.t0, b.t0, shift.t0, j) < 0 &&

@@ -16,6 +16,7 @@
 #include "kernel_checks.h"
 #include "kernels/kernels.h"
 #include "mesh_generators.h"
+#include "real.h"
 #include "sanitizer.h"
 
 namespace fcl {
@@ -23,8 +24,13 @@ namespace detail {
 namespace deformable {
 namespace {
 
+using test::abs;
 using test::allSets;
 using test::Random;
+using test::Real;
+using test::RealVector;
+
+const Real kInfinity = std::numeric_limits<Real>::infinity();
 
 /// facedDirections() computed with plain numbers.
 std::uint32_t facedDirectionsOf(const std::vector<TreeVertex>& vertices,
@@ -122,7 +128,7 @@ TEST(FCL_KERNELS, directionsThatTrianglesFace) {
 struct Signs {
   bool positive{true}, negative{true}, clearly_positive{true}, clearly_negative{true};
 
-  void add(long double x, long double margin) {
+  void add(Real x, Real margin) {
     positive = positive && x > 0;
     negative = negative && x < 0;
     clearly_positive = clearly_positive && x > margin;
@@ -130,9 +136,7 @@ struct Signs {
   }
 };
 
-using LongVector = Eigen::Matrix<long double, 3, 1>;
-
-long double volume(const LongVector& a, const LongVector& b, const LongVector& c) {
+Real volume(const RealVector& a, const RealVector& b, const RealVector& c) {
   return a.dot(b.cross(c));
 }
 
@@ -172,17 +176,16 @@ TEST(FCL_KERNELS, trianglesSeenFromAPoint) {
     }
     EXPECT_EQ((views.left | views.right | views.missed) >> count, 0U);
     for (std::size_t k = 0; k < count; ++k) {
-      LongVector a[2][3];
+      RealVector a[2][3];
       for (int frame = 0; frame < 2; ++frame)
         for (std::size_t corner = 0; corner < 3; ++corner)
           for (int c = 0; c < 3; ++c) {
             const TreeVertex& x = vertices[3 * k + corner];
-            a[frame][corner][c] =
-                static_cast<long double>(frame == 0 ? x.t0[c] : x.t1[c]) -
-                (frame == 0 ? point.t0[c] : point.t1[c]);
+            a[frame][corner][c] = Real{frame == 0 ? x.t0[c] : x.t1[c]} -
+                                  (frame == 0 ? point.t0[c] : point.t1[c]);
           }
       const auto &p = a[0], &q = a[1];
-      const long double margin = std::ldexp(1e-12L, 3 * exponent);
+      const Real margin = std::ldexp(1e-12L, 3 * exponent);
       Signs volumes;
       volumes.add(volume(p[0], p[1], p[2]), margin);
       volumes.add(
@@ -200,12 +203,11 @@ TEST(FCL_KERNELS, trianglesSeenFromAPoint) {
       EXPECT_TRUE(is_right || !volumes.clearly_negative);
       if (is_left || is_right) {
         // It is hit if all weights have the sign of the volume, or are zero.
-        const LongVector r(ray[0], ray[1], ray[2]);
-        const long double sign = is_left ? 1 : -1,
-                          weights[3] = {sign * volume(r, p[1], p[2]),
-                                        sign * volume(p[0], r, p[2]),
-                                        sign * volume(p[0], p[1], r)};
-        const long double least = *std::min_element(weights, weights + 3);
+        const RealVector r(ray[0], ray[1], ray[2]);
+        const Real sign = is_left ? 1 : -1, weights[3] = {sign * volume(r, p[1], p[2]),
+                                                          sign * volume(p[0], r, p[2]),
+                                                          sign * volume(p[0], p[1], r)};
+        const Real least = *std::min_element(weights, weights + 3);
         EXPECT_TRUE(least < 0 || !is_missed);
         EXPECT_TRUE(is_missed || least > -std::ldexp(1e-12L, 2 * exponent));
       }
@@ -248,8 +250,8 @@ struct MovingTriangles {
     }
   }
 
-  LongVector at(std::size_t vertex, long double t) const {
-    LongVector x;
+  RealVector at(std::size_t vertex, Real t) const {
+    RealVector x;
     for (int c = 0; c < 3; ++c)
       x[c] = (1 - t) * vertices[vertex].t0[c] + t * vertices[vertex].t1[c];
     return x;
@@ -258,8 +260,8 @@ struct MovingTriangles {
   template <typename Visit>
   void visitCorners(std::size_t i, Visit&& visit) const {
     for (int k = 0; k <= 16; ++k) {
-      const long double t = k / 16.L;
-      const LongVector corners[4] = {at(3 * i, t), at(3 * i + 1, t), at(3 * i + 2, t),
+      const Real t = k / 16.L;
+      const RealVector corners[4] = {at(3 * i, t), at(3 * i + 1, t), at(3 * i + 2, t),
                                      at(vertices.size() - 1, t)};
       visit(corners);
     }
@@ -304,17 +306,17 @@ TEST(FCL_KERNELS, leastSightFromAPoint) {
       EXPECT_EQ(other.distance_square, sight.distance_square) << k->name;
       EXPECT_EQ(other.sine_square, sight.sine_square) << k->name;
     }
-    long double distance = HUGE_VALL, sine = HUGE_VALL;
+    Real distance = kInfinity, sine = kInfinity;
     for (std::size_t t = 0; t < count; ++t)
-      x.visitCorners(t, [&](const LongVector(&p)[4]) {
-        const LongVector a = p[0] - p[3], b = p[1] - p[3], c = p[2] - p[3];
-        const long double six = std::abs(volume(a, b, c));
+      x.visitCorners(t, [&](const RealVector(&p)[4]) {
+        const RealVector a = p[0] - p[3], b = p[1] - p[3], c = p[2] - p[3];
+        const Real six = abs(volume(a, b, c));
         distance = std::min(distance, six / (b - a).cross(c - a).norm());
         sine = std::min(sine, six / (a.norm() * b.cross(c).norm()));
         sine = std::min(sine, six / (b.norm() * c.cross(a).norm()));
         sine = std::min(sine, six / (c.norm() * a.cross(b).norm()));
       });
-    const long double almost = 1 + 1e-12L;
+    const Real almost = 1 + 1e-12L;
     EXPECT_LE(sight.distance_square, distance * distance * almost);
     EXPECT_LE(sight.sine_square, sine * sine * almost);
     if (step == 0 && sine > 1e-3L) {
@@ -362,8 +364,8 @@ TEST(FCL_KERNELS, lowCorners) {
     for (const Kernels* k : allSets())
       EXPECT_EQ(k->lowCorners(x.vertices.data(), node, direction, distance), found)
           << k->name;
-    const LongVector d =
-        LongVector(direction[0], direction[1], direction[2]).normalized();
+    const RealVector d =
+        RealVector(direction[0], direction[1], direction[2]).normalized();
     for (std::size_t t = 0; t < 8; ++t)
       for (std::size_t k = 0; k < 3; ++k) {
         const bool is_low = found >> (8 * k + t) & 1U;
@@ -371,10 +373,10 @@ TEST(FCL_KERNELS, lowCorners) {
           EXPECT_FALSE(is_low);
           continue;
         }
-        long double height = HUGE_VALL, bound = HUGE_VALL;
-        x.visitCorners(t, [&](const LongVector(&p)[4]) {
-          const LongVector side = p[(k + 2) % 3] - p[(k + 1) % 3];
-          const long double area = (p[1] - p[0]).cross(p[2] - p[0]).dot(d);
+        Real height = kInfinity, bound = kInfinity;
+        x.visitCorners(t, [&](const RealVector(&p)[4]) {
+          const RealVector side = p[(k + 2) % 3] - p[(k + 1) % 3];
+          const Real area = (p[1] - p[0]).cross(p[2] - p[0]).dot(d);
           height = std::min(height, area / (side - side.dot(d) * d).norm());
           bound = std::min(bound, area / side.norm());
         });

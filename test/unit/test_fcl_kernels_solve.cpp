@@ -12,6 +12,7 @@
 #include "elementary/exact.h"
 #include "kernel_checks.h"
 #include "kernels/kernels.h"
+#include "real.h"
 #include "sanitizer.h"
 #include "windowed_pairs.h"
 
@@ -20,11 +21,13 @@ namespace detail {
 namespace deformable {
 namespace {
 
+using test::abs;
 using test::allSets;
 using test::expectSameBits;
 using test::MovingPair;
 using test::Random;
 using test::randomWindow;
+using test::Real;
 using test::scatteredPair;
 using test::WindowedPair;
 
@@ -170,19 +173,18 @@ TEST(FCL_KERNELS, solvedPairsAreSo) {
 }
 
 /// The volume of the four points at t, from the vectors that the kernels take.
-long double volumeAt(const MovingPair& pair, double t) {
-  long double p[4][3];
+Real volumeAt(const MovingPair& pair, double t) {
+  Real p[4][3];
   for (int i = 0; i < 4; ++i)
     for (int k = 0; k < 3; ++k)
-      p[i][k] = (1 - static_cast<long double>(t)) * pair.x[i].t0[k] +
-                static_cast<long double>(t) * pair.x[i].t1[k];
+      p[i][k] = (1 - Real{t}) * pair.x[i].t0[k] + Real{t} * pair.x[i].t1[k];
   const bool vf = pair.kind == ContinuousContactKind::kVertexFace;
   const int from[3] = {vf ? 0 : 2, vf ? 2 : 1, 3},
             to[3] = {vf ? 1 : 0, vf ? 1 : 0, vf ? 1 : 2};
-  long double e[3][3];
+  Real e[3][3];
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k) e[i][k] = p[from[i]][k] - p[to[i]][k];
-  long double volume = 0;
+  Real volume = 0;
   for (int k = 0; k < 3; ++k) {
     const int l = (k + 1) % 3, m = (k + 2) % 3;
     volume += e[0][k] * (e[1][l] * e[2][m] - e[1][m] * e[2][l]);
@@ -215,16 +217,15 @@ TEST(FCL_KERNELS, pairsWithOneRootAreDecided) {
     for (int lane = 0; lane < 8; ++lane) {
       const WindowedPair& q = queries[lane];
       constexpr int kParts = 64;
-      long double volumes[kParts + 1], size = 0;
+      Real volumes[kParts + 1], size = 0;
       int changes = 0;
       for (int k = 0; k <= kParts; ++k) {
         volumes[k] = volumeAt(q.pair, q.lo + (q.hi - q.lo) * k / kParts);
-        size = std::max(size, std::abs(volumes[k]));
+        size = std::max(size, abs(volumes[k]));
         changes += k > 0 && volumes[k] * volumes[k - 1] <= 0;
       }
-      const long double clear = 1e-3L * size;
-      if (changes != 1 || std::abs(volumes[0]) < clear ||
-          std::abs(volumes[kParts]) < clear)
+      const Real clear = 1e-3L * size;
+      if (changes != 1 || abs(volumes[0]) < clear || abs(volumes[kParts]) < clear)
         continue;
       ++((found.yes | found.no) >> lane & 1U ? decided : open);
     }
@@ -248,25 +249,25 @@ TEST(FCL_KERNELS, dividedBetweenTwoRoots) {
     const EightDivisions divided = divideAll(points.pairs(queries));
     for (int lane = 0; lane < 8; ++lane) {
       const WindowedPair& q = queries[lane];
-      const long double first = volumeAt(q.pair, q.lo), last = volumeAt(q.pair, q.hi);
+      const Real first = volumeAt(q.pair, q.lo), last = volumeAt(q.pair, q.hi);
       if (first == 0 || last == 0) {
         ++touching;
         EXPECT_FALSE(divided.divisible >> lane & 1U) << q.pair;
         continue;
       }
       // Far from zero on both sides.
-      long double farthest = 0, size = 0;
+      Real farthest = 0, size = 0;
       for (int k = 0; k <= 64; ++k) {
-        const long double volume = volumeAt(q.pair, q.lo + (q.hi - q.lo) * k / 64);
+        const Real volume = volumeAt(q.pair, q.lo + (q.hi - q.lo) * k / 64);
         farthest = std::max(farthest, first > 0 ? -volume : volume);
-        size = std::max(size, std::abs(volume));
+        size = std::max(size, abs(volume));
       }
-      const long double clear = 1e-6L * size;
-      if (first * last < 0 || size < 1e-3L || farthest < clear ||
-          std::abs(first) < clear || std::abs(last) < clear)
+      const Real clear = 1e-6L * size;
+      if (first * last < 0 || size < 1e-3L || farthest < clear || abs(first) < clear ||
+          abs(last) < clear)
         continue;
       ++returning;
-      const long double there = volumeAt(q.pair, divided.at[lane]);
+      const Real there = volumeAt(q.pair, divided.at[lane]);
       EXPECT_TRUE(divided.divisible >> lane & 1U) << q.pair;
       EXPECT_GE(first > 0 ? -there : there, farthest - 1e-12L * size) << q.pair;
     }

@@ -43,10 +43,10 @@ TEST(FCL_MOTION_PATH, sineAndCosine) {
     const double range = i % 2 ? 0x1p20 : std::ldexp(1., static_cast<int>(i % 50) - 40);
     const double x = random.uniform(-range, range);
     const SineCosine at = sineCosine(x);
-    const Real s = std::sin(Real{x}), c = std::cos(Real{x});
-    worst = std::max({worst, std::abs(at.sine - s), std::abs(at.cosine - c)});
+    const Real s = sin(Real{x}), c = cos(Real{x});
+    worst = std::max({worst, abs(at.sine - s), abs(at.cosine - c)});
     if (std::abs(x) < 0.785)
-      worst_relative = std::max(worst_relative, std::abs((at.sine - s) / s));
+      worst_relative = std::max(worst_relative, abs((at.sine - s) / s));
     // An angle in the first quarter.
     const double angle = std::abs(std::remainder(x, 1.5));
     const SineCosine of = sineCosine(angle);
@@ -69,7 +69,7 @@ TEST(FCL_MOTION_PATH, staysNearItsFormula) {
     const double error =
         static_cast<double>((applied(path.pose(t), x).cast<Real>() - expected).norm());
     worst = std::max(worst, error / path.positionError(x.norm()));
-    // In long double a difference quotient of third order has an error of 1e-9.
+    // In Real a difference quotient of third order has an error of 1e-9.
     const Real h = 1e-5L;
     const RealVector rate = (8 * (motion.at(t + h) * x - motion.at(t - h) * x) -
                              (motion.at(t + 2 * h) * x - motion.at(t - 2 * h) * x)) /

@@ -21,6 +21,7 @@
 #include "moving_mesh.h"
 #include "placed_mesh.h"
 #include "query/deformable_query.h"
+#include "real.h"
 #include "test_models.h"
 #include "traverse.h"
 #include "tree/box_position.h"
@@ -37,6 +38,7 @@ using test::kTimes;
 using test::MovingMesh;
 using test::PreparedMovingMesh;
 using test::Random;
+using test::Real;
 
 /// A mesh as a query uses it, with its triangles by the user's ids.
 struct Body {
@@ -62,13 +64,13 @@ using Visits = std::map<std::pair<int, int>, int>;
 /// Whether the exact ranges of two triangles along the 8 directions meet at t.
 bool doTrianglesOverlapAt(const Body& a, std::size_t i, const Body& b, std::size_t j,
                           double t) {
-  long double lo[2][8], hi[2][8];
+  Real lo[2][8], hi[2][8];
   const VertexPath first = a.instance.frames[a.triangles[i][0]];
   for (int side = 0; side < 2; ++side) {
     const Body& body = side ? b : a;
     const auto& triangle = body.triangles[side ? j : i];
     for (std::size_t c = 0; c < 3; ++c) {
-      long double d[8];
+      Real d[8];
       coordinatesAt(body.instance.frames[triangle[c]], t, first.t0, first.t0, d);
       for (int k = 0; k < 8; ++k) {
         lo[side][k] = c ? std::min(lo[side][k], d[k]) : d[k];

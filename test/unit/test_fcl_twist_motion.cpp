@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Motions by a constant velocity and angular velocity, against the exponential of the
-// twist in long double. FCL_CCD_TEST_PATHS makes the series so many times as long:
+// twist in Real. FCL_CCD_TEST_PATHS makes the series so many times as long:
 //   FCL_CCD_TEST_PATHS=10 build/release/test/unit/test_fcl_twist_motion
 #include "fcl/math/motion/twist_motion.h"
 
@@ -78,11 +78,11 @@ struct Twist {
     if (angle == 0) return {r, there + v * t - r * o};
     const RealVector a = w / angle, along = a * a.dot(v), across = v - along;
     const RealMatrix turned = rotationAbout(a, angle * t) * r;
-    const Real half = std::sin(angle * t / 2);
+    const Real half = sin(angle * t / 2);
     const RealVector way =
         path == ReferencePath::kStraight
             ? RealVector(v * t)
-            : RealVector(along * t + across * (std::sin(angle * t) / angle) +
+            : RealVector(along * t + across * (sin(angle * t) / angle) +
                          a.cross(across) * (2 * half * half / angle));
     return {turned, there + way - turned * o};
   }
