@@ -235,9 +235,9 @@ TEST(FCL_FRAGILE_SHELL, partsAreClosedAndApart) {
     for (const Triangle& t : mesh.triangles)
       for (int k = 1; k < 3; ++k) EXPECT_EQ(part_of[t[k]], part_of[t[0]]);
     const std::vector<Triangle> triangles = mesh.triangles;
-    const SceneFrame frame{
-        0,  0,       triangles, mesh.vertices, mesh.vertices, mesh.vertices, change,
-        {}, part_of, {}};
+    const auto& at_rest = mesh.vertices;
+    const SceneFrame frame{0,       0,      triangles, at_rest, at_rest, at_rest,
+                           at_rest, change, {},        part_of, {}};
     const FrameFigures figures = SceneMeasure(1).measure(frame);
     EXPECT_FALSE(figures.crossing);
     EXPECT_EQ(figures.contacts(), 0u);
