@@ -210,7 +210,7 @@ def test_wrong_calls_change_nothing():
         (lambda: manager.collide(motion=DOWN), ValueError, "motion is for a mesh"),
         (lambda: manager.collide(3), TypeError, "other is of type int"),
         (lambda: manager.collide(t_max=2), ValueError, "t_max"),
-        (lambda: manager.collide(toc_err=-1), ValueError, "o1 is object 1, o2 .*: .*toc_err"),
+        (lambda: manager.collide(toc_err=-1), ValueError, "toc_err"),
     ):
         with pytest.raises(error, match=text):
             call()
