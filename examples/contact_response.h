@@ -109,6 +109,7 @@ class Memory {
   friend class Step;
   struct Pair {
     fcl::ContinuousContactKind kind;
+    int num_vertices;
     std::array<std::size_t, 4> vertices;
     bool operator<(const Pair& other) const {
       return std::tie(kind, vertices) < std::tie(other.kind, other.vertices);
@@ -243,8 +244,8 @@ class Step {
   }
 
   static Memory::Pair pairOf(const fcl::ContinuousContactd& contact) {
-    Memory::Pair pair{contact.kind, {}};
-    for (int k = 0; k < contact.numVertices(); ++k)
+    Memory::Pair pair{contact.kind, contact.numVertices(), {}};
+    for (int k = 0; k < pair.num_vertices; ++k)
       pair.vertices[static_cast<std::size_t>(k)] = vertexOf(contact, k);
     return pair;
   }
@@ -256,11 +257,6 @@ class Step {
                       const fcl::Vector3d& b) {
     const double square = (b - a).squaredNorm();
     return square > 0 ? clamped((p - a).dot(b - a) / square) : .5;
-  }
-
-  static int numVerticesOf(Kind kind) {
-    if (kind == Kind::kVertexVertex) return 2;
-    return kind == Kind::kVertexEdge ? 3 : 4;
   }
 
   void projectAll() {
@@ -280,7 +276,7 @@ class Step {
       if (*std::max_element(pair.vertices.begin(), pair.vertices.end()) >= before_.size())
         continue;
       fcl::Vector3d x[4], place;
-      for (int k = 0; k < numVerticesOf(pair.kind); ++k)
+      for (int k = 0; k < pair.num_vertices; ++k)
         x[k] = before_[pair.vertices[static_cast<std::size_t>(k)]];
       if (!nearestPlace(pair.kind, x, place)) continue;
       Constraint c = constraintAt(pair, x, place);
@@ -330,7 +326,7 @@ class Step {
   static Constraint constraintAt(const Memory::Pair& pair, const fcl::Vector3d (&x)[4],
                                  const fcl::Vector3d& place) {
     Constraint c{};
-    c.size = numVerticesOf(pair.kind);
+    c.size = pair.num_vertices;
     std::copy(pair.vertices.begin(), pair.vertices.end(), c.vertex);
     const auto setEdge = [&](int k, double sign) {
       const double t = along(place, x[k], x[k + 1]);

@@ -44,8 +44,7 @@ std::string machineName() {
 }
 
 std::string libraryKernels() {
-  const std::string name = detail::deformable::kernels().name;
-  return name == "plain" || name == "SCALAR" || name == "EMU128" ? "scalar" : "vector";
+  return areScalar(detail::deformable::kernels().name) ? "scalar" : "vector";
 }
 
 void resetPeakMemory() {

@@ -10,6 +10,12 @@ namespace test {
 /// @brief Processor, number of cores and compiler, without commas.
 std::string machineName();
 
+/// @brief Whether kernels of a name have no vector instructions. Some versions of Highway
+/// leave them out where each processor has SSE2.
+inline bool areScalar(const std::string& kernels) {
+  return kernels == "plain" || kernels == "SCALAR" || kernels == "EMU128";
+}
+
 /// @brief What the library's kernels are here: "vector" or "scalar".
 std::string libraryKernels();
 

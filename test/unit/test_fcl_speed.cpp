@@ -12,6 +12,7 @@
 
 #include "csv_rows.h"
 #include "kernels/kernels.h"
+#include "machine.h"
 #include "speed/distance_truth.h"
 
 namespace fcl {
@@ -24,14 +25,10 @@ const char* const kColumns =
 
 const std::string kPaper = "scalar (paper)";
 
-/// Whether the library has kernels without vector instructions. Some versions of Highway
-/// leave them out where each processor has SSE2.
 bool hasScalarKernels() {
   const auto all = detail::deformable::allKernels();
-  return std::any_of(all.begin(), all.end(), [](const auto* set) {
-    const std::string name = set->name;
-    return name == "plain" || name == "SCALAR" || name == "EMU128";
-  });
+  return std::any_of(all.begin(), all.end(),
+                     [](const auto* set) { return areScalar(set->name); });
 }
 
 /// Runs the benchmark on small scenes.
