@@ -146,7 +146,7 @@ Motion following(const std::shared_ptr<Bounded>& bounded) {
   Motion motion{};
   motion.bounded = bounded;
   motion.path.path = PathKind::kBounded;
-  motion.path.motion = bounded.get();
+  motion.path.motion = fcl::detail::asBoundedMotion<double>(*bounded);
   for (const int end : {0, 1}) {
     const auto at = bounded->placementAt(end);
     std::copy_n(at.rotation, 9, motion.path.pose[end].rotation);

@@ -56,9 +56,13 @@ struct BodySide {
     return {poses.at(times.at[0]), poses.at(times.at[1]), poses.at(times.at[2])};
   }
 
-  /// @brief The bound on the acceleration during a span; valid until the next call.
+  /// @brief The bound on the acceleration during a span, or during the whole step where
+  /// that is as good; valid until the next call.
   const AccelerationBound& acceleration(double t0, double t1) {
-    if (has_constant_acceleration_ && span_[0] >= 0) return acceleration_;
+    if (is_steady_) {
+      t0 = 0;
+      t1 = 1;
+    }
     if (t0 != span_[0] || t1 != span_[1]) {
       acceleration_ = body.path().acceleration(t0, t1);
       span_[0] = t0;
@@ -92,7 +96,7 @@ struct BodySide {
                 : accelerationOf(node.box[0].get(lane),
                                  node.box[body.isRigid() ? 0 : 1].get(lane), t0, t1);
     };
-    if (part && has_constant_acceleration_)
+    if (part && is_steady_)
       return stored_.get(MovingBodyReader::slotOf(*part), part->child, set).most;
     set(other_);
     return other_.most;
@@ -117,7 +121,7 @@ struct BodySide {
       single.acceleration = 0;
       if (single.is_readable) single.of = body.triangle(place);
     });
-    if (out.is_readable && !goes_straight && !(is_stored && has_constant_acceleration_))
+    if (out.is_readable && !goes_straight && !(is_stored && is_steady_))
       out.acceleration = deformable::accelerationOf(acceleration(t0, t1), out.of);
     return out;
   }
@@ -170,7 +174,7 @@ struct BodySide {
   /// Those of nodes that were opened, if they are the same for all spans.
   SlotCache<std::int32_t, Accelerations, MovingBodyReader::kSlots> stored_{-1};
   Accelerations other_{};
-  const bool has_constant_acceleration_{body.path().hasConstantAcceleration()};
+  const bool is_steady_{body.path().hasSteadyAcceleration()};
   AccelerationBound acceleration_;
   /// The span of that bound.
   double span_[2]{-1, -1};

@@ -62,9 +62,11 @@ double checkedAngularSpeed(const BoundedMotion& motion, const char* name, double
 }  // namespace
 
 double AccelerationBound::ofProgram(const Vec& center, double radius) const {
-  // As checked(), so that it is the same for a motion that follows a link.
-  if (link) return link->boundOf(*this, center, radius) * kUpward;
   return checkedAcceleration(*motion, name, center, radius, t0, t1);
+}
+
+bool MotionPath::hasSteadyAcceleration() const {
+  return hasConstantAcceleration() || (link_ && link_->isSteady());
 }
 
 MotionPath MotionPath::bounded(const BoundedMotion& motion, const char* name) {
@@ -88,14 +90,20 @@ MotionPath MotionPath::bounded(const BoundedMotion& motion, const char* name) {
   return path;
 }
 
-// From the beginning, |T'| grows by the acceleration at most. This is far from what is
-// reached for turns of more than 8 radians, and if the acceleration is much larger than
-// the speed at the beginning and the way, as on a path through many waypoints. There it
-// is bounded in spans, from the middle of each: in spans of about a radian, in which the
-// acceleration adds about as much as the speed and the way. The computed T and T' may be
-// off by what the motion says in moreRounding().
+// A link says how fast it is. Else, from the beginning, |T'| grows by the acceleration at
+// most. This is far from what is reached for turns of more than 8 radians, and if the
+// acceleration is much larger than the speed at the beginning and the way, as on a path
+// through many waypoints. There it is bounded in spans, from the middle of each: in spans
+// of about a radian, in which the acceleration adds about as much as the speed and the
+// way. The computed T and T' may be off by what the motion says in moreRounding().
 void MotionPath::setBoundedSpeed() {
   constexpr double kManyRadians = 8, kMuchBend = 16, kMostSpans = 64;
+  if (link_) {
+    translation_speed_ =
+        (link_->speedBound() + more_rounding_.translation_rate) * kUpward;
+    extent_ = (translation_speed_ + 2 * more_rounding_.translation) * kUpward;
+    return;
+  }
   const auto acceleration = [this](double t0, double t1) {
     return checkedAcceleration(*motion_, name_, {0, 0, 0}, 0, t0, t1);
   };
@@ -134,11 +142,16 @@ void MotionPath::setBoundedSize() {
 }
 
 Pose MotionPath::boundedPose(double t) const {
-  const BoundedMotion::Placement at =
-      checked(motion_->placementAt(t), "placementAt()", name_);
   Pose out;
-  std::copy(at.rotation, at.rotation + 9, out.rotation);
-  for (int k = 0; k < 3; ++k) out.translation[k] = at.translation[k] - origin_[k];
+  if (link_) {
+    out = link_->poseAt(t);
+  } else {
+    const BoundedMotion::Placement at =
+        checked(motion_->placementAt(t), "placementAt()", name_);
+    std::copy(at.rotation, at.rotation + 9, out.rotation);
+    std::copy(at.translation, at.translation + 3, out.translation);
+  }
+  for (int k = 0; k < 3; ++k) out.translation[k] -= origin_[k];
   return out;
 }
 

@@ -88,8 +88,6 @@ double middleOf(double t0, double t1) { return t0 + 0.5 * (t1 - t0); }
 ChainPath::ChainPath(std::shared_ptr<const JointTree> tree, const Pose& base,
                      std::vector<Coefficients> values)
     : tree_(std::move(tree)), base_(base), number_(nextNumber()) {
-  std::copy(base.rotation, base.rotation + 9, base_state_.rotation);
-  base_state_.translation = vecOf(base.translation);
   base_bounds_.reach = norm(base.translation);
   const auto& joints = tree_->joints();
   assert(values.size() == joints.size());
@@ -98,6 +96,7 @@ ChainPath::ChainPath(std::shared_ptr<const JointTree> tree, const Pose& base,
     assert(-1 <= joints[j].parent && joints[j].parent < static_cast<int>(j));
     requireValue(values[j], joints[j].is_revolute, j);
     bounds_.push_back(boundsOf(joints[j], values[j]));
+    is_steady_ = is_steady_ && values[j].size() <= 2;
     const Coefficients rate = derivativeOf(values[j]);
     values_.push_back({std::move(values[j]), rate, derivativeOf(rate)});
   }
@@ -152,65 +151,101 @@ std::vector<double> ChainPath::valuesAt(double t) const {
   return values;
 }
 
-void ChainPath::move(const JointTree::Joint& joint, const JointState& before,
-                     const Value& value, double t, JointState& out) {
-  const double q = valueAt(value.at, t), rate = valueAt(value.rate, t),
-               acceleration = valueAt(value.acceleration, t);
+/// The place of a joint's frame, seen from that of the joint before it.
+Vec ChainPath::wayOf(const JointTree::Joint& joint, const Pose& before,
+                     const Value& value, double t) {
+  const Vec way = rotated(before.rotation, vecOf(joint.origin.pose.translation));
+  if (joint.is_revolute) return way;
+  return way + valueAt(value.at, t) * rotated(before.rotation, joint.axis_in_parent);
+}
+
+void ChainPath::move(const JointTree::Joint& joint, const Pose& before,
+                     const Value& value, double t, Pose& out) {
   const auto& origin = joint.origin.pose;
-  const Vec axis = rotated(before.rotation, joint.axis_in_parent);
-  Vec way = rotated(before.rotation, vecOf(origin.translation));
-  if (!joint.is_revolute) way = way + q * axis;
-  const Vec turning = cross(before.turn, way);
-  out.translation = before.translation + way;
-  out.speed = before.speed + turning;
-  out.acceleration =
-      before.acceleration + cross(before.turn_rate, way) + cross(before.turn, turning);
-  if (!joint.is_revolute) {
-    multiply(before.rotation, origin.rotation, out.rotation);
-    out.speed = out.speed + rate * axis;
-    out.acceleration =
-        out.acceleration + acceleration * axis + (2 * rate) * cross(before.turn, axis);
-    out.turn = before.turn;
-    out.turn_rate = before.turn_rate;
-    return;
-  }
-  const SineCosine at = sineAndOneMinusCosine(q);
+  set(out.translation, vecOf(before.translation) + wayOf(joint, before, value, t));
+  if (!joint.is_revolute) return multiply(before.rotation, origin.rotation, out.rotation);
+  const SineCosine at = sineAndOneMinusCosine(valueAt(value.at, t));
   double own[9];
   for (int i = 0; i < 9; ++i)
     own[i] = origin.rotation[i] +
              (at.sine * joint.sine_rotation[i] + at.cosine * joint.cosine_rotation[i]);
   multiply(before.rotation, own, out.rotation);
-  out.turn = before.turn + rate * axis;
-  out.turn_rate =
-      before.turn_rate + acceleration * axis + rate * cross(before.turn, axis);
 }
 
-void ChainPath::computeStates(double t, std::size_t count, Kept& kept) const {
+void ChainPath::rates(const JointTree::Joint& joint, const Pose& before,
+                      const JointRates& rates_before, const Value& value, double t,
+                      JointRates& out) {
+  const double rate = valueAt(value.rate, t),
+               acceleration = valueAt(value.acceleration, t);
+  const Vec axis = rotated(before.rotation, joint.axis_in_parent),
+            way = wayOf(joint, before, value, t), turning = cross(rates_before.turn, way);
+  out = rates_before;
+  out.speed = out.speed + turning;
+  out.acceleration = out.acceleration + cross(rates_before.turn_rate, way) +
+                     cross(rates_before.turn, turning);
+  const Vec axis_rate = cross(rates_before.turn, axis);
+  if (joint.is_revolute) {
+    out.turn = out.turn + rate * axis;
+    out.turn_rate = out.turn_rate + acceleration * axis + rate * axis_rate;
+  } else {
+    out.speed = out.speed + rate * axis;
+    out.acceleration = out.acceleration + acceleration * axis + (2 * rate) * axis_rate;
+  }
+}
+
+void ChainPath::computePoses(double t, std::size_t count, Kept& kept) const {
   const auto& joints = tree_->joints();
   assert(count <= joints.size());
-  kept.states.resize(joints.size());
-  for (; kept.count < count; ++kept.count) {
-    const JointTree::Joint& joint = joints[kept.count];
-    assert(joint.parent < static_cast<int>(kept.count));
+  kept.poses.resize(joints.size());
+  for (; kept.num_poses < count; ++kept.num_poses) {
+    const JointTree::Joint& joint = joints[kept.num_poses];
+    assert(joint.parent < static_cast<int>(kept.num_poses));
     move(joint,
-         joint.parent < 0 ? base_state_
-                          : kept.states[static_cast<std::size_t>(joint.parent)],
-         values_[kept.count], t, kept.states[kept.count]);
+         joint.parent < 0 ? base_ : kept.poses[static_cast<std::size_t>(joint.parent)],
+         values_[kept.num_poses], t, kept.poses[kept.num_poses]);
+  }
+}
+
+void ChainPath::computeRates(double t, std::size_t count, Kept& kept) const {
+  const auto& joints = tree_->joints();
+  assert(count <= kept.num_poses);
+  kept.rates.resize(joints.size());
+  for (; kept.num_rates < count; ++kept.num_rates) {
+    const JointTree::Joint& joint = joints[kept.num_rates];
+    const bool is_first = joint.parent < 0;
+    const auto parent = static_cast<std::size_t>(is_first ? 0 : joint.parent);
+    rates(joint, is_first ? base_ : kept.poses[parent],
+          is_first ? base_rates_ : kept.rates[parent], values_[kept.num_rates], t,
+          kept.rates[kept.num_rates]);
   }
 }
 
 // The thread keeps what is computed here: the mode of a caller must not get into it.
-const JointState& ChainPath::stateAt(int joint, double t) const {
-  if (joint < 0) return base_state_;
+ChainPath::Kept& ChainPath::keptAt(double t) const {
   constexpr int kBits = 6;
   using Cache = SlotCache<StateKey, Kept, 1 << kBits>;
   thread_local const std::unique_ptr<Cache> cache(new Cache(StateKey{0, 0}));
   const std::size_t slot = slotOf(t, static_cast<std::int32_t>(number_), kBits);
-  Kept& kept = cache->get(slot, {number_, t}, [](Kept& made) { made.count = 0; });
+  return cache->get(slot, {number_, t},
+                    [](Kept& made) { made.num_poses = made.num_rates = 0; });
+}
+
+const Pose& ChainPath::poseAt(int joint, double t) const {
+  if (joint < 0) return base_;
+  Kept& kept = keptAt(t);
   const auto place = static_cast<std::size_t>(joint);
-  computeStates(t, place + 1, kept);
-  assert(place < kept.count && isRotation(kept.states[place].rotation, kMostDefect));
-  return kept.states[place];
+  computePoses(t, place + 1, kept);
+  assert(place < kept.num_poses && isRotation(kept.poses[place].rotation, kMostDefect));
+  return kept.poses[place];
+}
+
+ChainPath::State ChainPath::stateAt(int joint, double t) const {
+  if (joint < 0) return {base_, base_rates_};
+  Kept& kept = keptAt(t);
+  const auto place = static_cast<std::size_t>(joint);
+  computePoses(t, place + 1, kept);
+  computeRates(t, place + 1, kept);
+  return {kept.poses[place], kept.rates[place]};
 }
 
 LinkPath::LinkPath(std::shared_ptr<const ChainPath> chain, const JointTree::Link& link)
@@ -218,101 +253,126 @@ LinkPath::LinkPath(std::shared_ptr<const ChainPath> chain, const JointTree::Link
   assert(joint_ < static_cast<int>(chain_->tree().joints().size()));
 }
 
-bool LinkPath::isRevolute() const {
-  return joint_ >= 0 &&
-         chain_->tree().joints()[static_cast<std::size_t>(joint_)].is_revolute;
+Pose LinkPath::poseAt(double t) const {
+  const Pose& joint = chain_->poseAt(joint_, t);
+  Pose out;
+  multiply(joint.rotation, pose_.pose.rotation, out.rotation);
+  set(out.translation,
+      rotated(joint.rotation, vecOf(pose_.pose.translation)) + vecOf(joint.translation));
+  return out;
 }
 
 BoundedMotion::Placement LinkPath::placementAt(double t) const {
   const DefaultFloatingPoint mode;
-  const JointState& state = chain_->stateAt(joint_, t);
+  const Pose pose = poseAt(t);
   Placement out;
-  multiply(state.rotation, pose_.pose.rotation, out.rotation);
-  set(out.translation,
-      rotated(state.rotation, vecOf(pose_.pose.translation)) + state.translation);
+  std::copy(pose.rotation, pose.rotation + 9, out.rotation);
+  std::copy(pose.translation, pose.translation + 3, out.translation);
   return out;
 }
 
 BoundedMotion::Placement LinkPath::rateAt(double t) const {
   const DefaultFloatingPoint mode;
-  const JointState& state = chain_->stateAt(joint_, t);
+  const ChainPath::State state = chain_->stateAt(joint_, t);
   double rotation[9];
-  multiply(state.rotation, pose_.pose.rotation, rotation);
+  multiply(state.pose.rotation, pose_.pose.rotation, rotation);
   Placement out;
-  crossColumns(state.turn, rotation, out.rotation);
-  set(out.translation,
-      cross(state.turn, rotated(state.rotation, vecOf(pose_.pose.translation))) +
-          state.speed);
+  crossColumns(state.rates.turn, rotation, out.rotation);
+  set(out.translation, cross(state.rates.turn, rotated(state.pose.rotation,
+                                                       vecOf(pose_.pose.translation))) +
+                           state.rates.speed);
   return out;
 }
 
-// R x = R_p B exp(q [a]) x, and only the part of x at right angles to a turns with q. The
-// derivatives of R are at least those of R_p, and what is more belongs to q. The computed
-// part is within 8 u of the size of x.
-DerivativeBounds LinkPath::boundsOfBall(const Vec& center, double radius) const {
+// The pose (S, s) of the link in the frame of its joint rounds.
+LinearBound LinkPath::radiusInJoint() const {
+  return {1 + 0x1p-39, pose_.rotation_error + 0x1p-45,
+          pose_.translation_error + 0x1p-45 * norm(pose_.pose.translation)};
+}
+
+LinearBound LinkPath::reachInJoint() const {
+  const LinearBound radius = radiusInJoint();
+  return {radius.per_radius, 1 + 0x1p-39 + radius.per_distance,
+          norm(pose_.pose.translation) * (1 + 0x1p-39) + radius.constant};
+}
+
+// R x = R_p B exp(q [a]) x for x = S c + s, and only the part of x at right angles to a
+// turns with q. The derivatives of R are at least those of R_p, and what is more belongs
+// to q.
+AccelerationBound LinkPath::accelerationInStep() const {
   const JointBounds& of = bounds();
-  const double far = norm(center) + radius;
-  double across = far;
-  if (isRevolute())
-    across = norm(cross(chain_->tree().joints()[static_cast<std::size_t>(joint_)].axis,
-                        center)) +
-             64 * kUnit * norm(center) + radius;
-  // A part of x is not longer than x.
-  assert(!(across > far * kUpward + 0x1p-500));
-  const auto bound = [&](double translation, double before, double rotation) {
-    return (translation + before * far + (rotation - before) * across) * kUpward;
-  };
-  return {bound(of.translation.first, of.rotation_before.first, of.rotation.first),
-          bound(of.translation.second, of.rotation_before.second, of.rotation.second),
-          bound(of.translation.third, of.rotation_before.third, of.rotation.third)};
-}
-
-// The computed acceleration has the relative errors of the rotations, of which a term has
-// up to three, and of angular velocities, which are at most 2^-38 (errorOf(), and
-// largestValue()). An error of the direction of a velocity acts on all of x, the velocity
-// itself only on what is across.
-double LinkPath::boundOf(const AccelerationBound& in, const Vec& center,
-                         double radius) const {
-  const Vec x = posed(pose_.pose, center);
-  const double distance = norm(center), length = norm(x),
-               size = radius * (1 + 0x1p-39) + pose_.rotation_error * distance +
-                      pose_.translation_error + 0x1p-46 * (length + distance);
-  const DerivativeBounds whole = boundsOfBall(x, size);
-  const double error = 16 * bounds().rotation_error, half = 0.5 * (in.t1 - in.t0),
-               own = norm(rotated(in.turn, center) + vecOf(in.offset)),
-               there = own + in.turning * (size + (error + 0x1p-44) * (length + size)) +
-                       (0x1p-36 + error) * whole.second;
-  // The bound for the whole step holds in the middle of the span.
-  assert(!isTimeOfStep(middleOf(in.t0, in.t1)) ||
-         !(own > (1 + 0x1p-36 + error) * whole.second * kUpward +
-                     in.turning * (error + 0x1p-44) * (length + size) + 0x1p-500));
-  return std::min(whole.second, there + half * whole.third) * kUpward;
-}
-
-// (T + R (S x + s))'' for the link's pose (S, s) in the frame of its joint (R, T).
-AccelerationBound LinkPath::accelerationIn(double t0, double t1) const {
-  const JointState& middle = chain_->stateAt(joint_, middleOf(t0, t1));
+  const LinearBound radius = radiusInJoint(), reach = reachInJoint();
+  double of_reach = of.rotation.second, across = 0;
   AccelerationBound out{};
-  out.motion = this;
-  out.link = this;
-  out.t0 = t0;
-  out.t1 = t1;
   out.jerk = HUGE_VAL;
-  out.turning = dot(middle.turn, middle.turn) + norm(middle.turn_rate);
+  if (joint_ >= 0 &&
+      chain_->tree().joints()[static_cast<std::size_t>(joint_)].is_revolute) {
+    across = of.rotation.second - of.rotation_before.second;
+    // The computed part is within 64 u of the size of x.
+    of_reach = of.rotation_before.second + 0x1p-46 * across;
+    const Vec axis =
+        across * chain_->tree().joints()[static_cast<std::size_t>(joint_)].axis;
+    crossColumns(axis, pose_.pose.rotation, out.turn);
+    set(out.offset, cross(axis, vecOf(pose_.pose.translation)));
+  }
+  out.per_radius = of_reach * reach.per_radius + across * radius.per_radius;
+  out.per_distance = of_reach * reach.per_distance + across * radius.per_distance;
+  out.constant =
+      of.translation.second + of_reach * reach.constant + across * radius.constant;
+  out.per_displacement = 2 * of.rotation.first * kUpward;
+  return out;
+}
+
+// (T + R (S c + s))'' in the middle, and by how much more it may be in the span. The
+// computed acceleration has the relative errors of the rotations, of which a term has up
+// to three, and of angular velocities, which are at most 2^-38 (errorOf(), and
+// largestValue()). An error of the direction of a velocity acts on all of x.
+AccelerationBound LinkPath::accelerationFromMiddle(double t0, double t1) const {
+  const ChainPath::State state = chain_->stateAt(joint_, middleOf(t0, t1));
+  const JointRates& middle = state.rates;
+  const JointBounds& of = bounds();
+  const LinearBound radius = radiusInJoint(), reach = reachInJoint();
+  const double turning = dot(middle.turn, middle.turn) + norm(middle.turn_rate),
+               half = 0.5 * (t1 - t0), error = 16 * of.rotation_error + 0x1p-36,
+               per_reach = turning * error + error * of.rotation.second +
+                           half * of.rotation.third;
+  AccelerationBound out{};
+  out.jerk = HUGE_VAL;
+  out.per_radius = turning * radius.per_radius + per_reach * reach.per_radius;
+  out.per_distance = turning * radius.per_distance + per_reach * reach.per_distance;
+  out.constant = turning * radius.constant + per_reach * reach.constant +
+                 error * of.translation.second + half * of.translation.third;
   out.per_displacement = 2 * (turnSpeedIn(t0, t1, middle) * kUpward);
   double rotation[9], velocity[9], first[9], second[9];
-  multiply(middle.rotation, pose_.pose.rotation, rotation);
+  multiply(state.pose.rotation, pose_.pose.rotation, rotation);
   crossColumns(middle.turn, rotation, velocity);
   crossColumns(middle.turn, velocity, first);
   crossColumns(middle.turn_rate, rotation, second);
   for (int i = 0; i < 9; ++i) out.turn[i] = first[i] + second[i];
-  const Vec arm = rotated(middle.rotation, vecOf(pose_.pose.translation));
+  const Vec arm = rotated(state.pose.rotation, vecOf(pose_.pose.translation));
   set(out.offset, middle.acceleration + cross(middle.turn_rate, arm) +
                       cross(middle.turn, cross(middle.turn, arm)));
+  // The bound for the whole step holds in the middle of the span.
+  assert(!isTimeOfStep(middleOf(t0, t1)) ||
+         !(norm(vecOf(out.offset)) >
+           (1 + 2 * error) * accelerationInStep().of({0, 0, 0}, 0) +
+               turning * error * reach.constant + 0x1p-500));
   return out;
 }
 
-double LinkPath::turnSpeedIn(double t0, double t1, const JointState& middle) const {
+// Which one is less depends on the place. They are compared for the points around the
+// origin of the link, within a part of what the chain reaches.
+AccelerationBound LinkPath::accelerationIn(double t0, double t1) const {
+  constexpr double kPart = 0.125;
+  const AccelerationBound in_step = accelerationInStep();
+  if (t0 == 0 && t1 == 1) return in_step;
+  const AccelerationBound from_middle = accelerationFromMiddle(t0, t1);
+  const double near = kPart * bounds().reach;
+  return in_step.of({0, 0, 0}, near) < from_middle.of({0, 0, 0}, near) ? in_step
+                                                                       : from_middle;
+}
+
+double LinkPath::turnSpeedIn(double t0, double t1, const JointRates& middle) const {
   const DerivativeBounds& whole = bounds().rotation;
   const double error = 0x1p-36 + 16 * bounds().rotation_error, speed = norm(middle.turn),
                there = speed + error * whole.first + 0.5 * (t1 - t0) * whole.second;
@@ -324,12 +384,20 @@ double LinkPath::turnSpeedIn(double t0, double t1, const JointState& middle) con
 double LinkPath::accelerationBound(const double (&center)[3], double radius, double t0,
                                    double t1) const {
   const DefaultFloatingPoint mode;
-  return boundOf(accelerationIn(t0, t1), vecOf(center), radius);
+  const Vec place = vecOf(center);
+  return std::min(accelerationInStep().of(place, radius),
+                  accelerationFromMiddle(t0, t1).of(place, radius));
+}
+
+double LinkPath::speedBound() const {
+  const JointBounds& of = bounds();
+  return (of.translation.first + of.rotation.first * norm(pose_.pose.translation)) *
+         kUpward;
 }
 
 double LinkPath::angularSpeedBound(double t0, double t1) const {
   const DefaultFloatingPoint mode;
-  return turnSpeedIn(t0, t1, chain_->stateAt(joint_, middleOf(t0, t1)));
+  return turnSpeedIn(t0, t1, chain_->stateAt(joint_, middleOf(t0, t1)).rates);
 }
 
 BoundedMotion::Rounding LinkPath::moreRounding() const {

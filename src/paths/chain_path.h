@@ -31,10 +31,8 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief The frame of a joint at a time, with its derivatives by t, in the world.
-struct JointState {
-  double rotation[9];
-  Vec translation;
+/// @brief The derivatives by t of the frame of a joint at a time, in the world.
+struct JointRates {
   /// T', T''.
   Vec speed, acceleration;
   /// The angular velocity and its derivative.
@@ -64,6 +62,8 @@ class ChainPath {
   const JointTree& tree() const { return *tree_; }
   const std::shared_ptr<const JointTree>& sharedTree() const { return tree_; }
   const Pose& base() const { return base_; }
+  /// @brief Whether all joints move at constant speed.
+  bool isSteady() const { return is_steady_; }
   const JointBounds& bounds(int joint) const {
     assert(joint < static_cast<int>(bounds_.size()));
     return joint < 0 ? base_bounds_ : bounds_[static_cast<std::size_t>(joint)];
@@ -74,7 +74,15 @@ class ChainPath {
 
   /// @brief The frame of a joint at t. Those before it are computed too, and the thread
   /// keeps them: other links ask for the same times. Valid until it is asked again.
-  const JointState& stateAt(int joint, double t) const;
+  const Pose& poseAt(int joint, double t) const;
+
+  /// @brief A frame and its derivatives.
+  struct State {
+    const Pose& pose;
+    const JointRates& rates;
+  };
+  /// @brief The same for the derivatives. Many times are asked for the frame alone.
+  State stateAt(int joint, double t) const;
 
  private:
   /// The joint's value and derivatives, as polynomials.
@@ -82,26 +90,40 @@ class ChainPath {
     Coefficients at, rate, acceleration;
   };
 
-  /// The frames of the first joints at a time.
+  /// The frames of the first joints at a time, and the derivatives of some.
   struct Kept {
-    std::vector<JointState> states;
-    std::size_t count{0};
+    std::vector<Pose> poses;
+    std::vector<JointRates> rates;
+    std::size_t num_poses{0}, num_rates{0};
   };
 
-  /// Computes frames until there are `count`.
-  void computeStates(double t, std::size_t count, Kept& kept) const;
-  static void move(const JointTree::Joint& joint, const JointState& before,
-                   const Value& value, double t, JointState& out);
+  Kept& keptAt(double t) const;
+  void computePoses(double t, std::size_t count, Kept& kept) const;
+  void computeRates(double t, std::size_t count, Kept& kept) const;
+  static Vec wayOf(const JointTree::Joint& joint, const Pose& before, const Value& value,
+                   double t);
+  static void move(const JointTree::Joint& joint, const Pose& before, const Value& value,
+                   double t, Pose& out);
+  static void rates(const JointTree::Joint& joint, const Pose& before,
+                    const JointRates& rates_before, const Value& value, double t,
+                    JointRates& out);
   JointBounds boundsOf(const JointTree::Joint& joint, const Coefficients& value) const;
 
   std::shared_ptr<const JointTree> tree_;
   Pose base_;
   std::vector<Value> values_;
-  JointState base_state_{};
+  JointRates base_rates_{};
   JointBounds base_bounds_{};
   std::vector<JointBounds> bounds_;
+  bool is_steady_{true};
   /// Of this path: no other one of the process has it.
   std::uint64_t number_;
+};
+
+/// @brief A bound that is linear in the radius of a ball and the distance of its center
+/// from the origin of the body.
+struct LinearBound {
+  double per_radius, per_distance, constant;
 };
 
 /// @brief The motion of a link.
@@ -111,17 +133,25 @@ class LinkPath : public BoundedMotion {
   LinkPath(std::shared_ptr<const ChainPath> chain, const JointTree::Link& link);
 
   Placement placementAt(double t) const override;
+  /// @brief The same for the library, whose floating-point mode is the default one.
+  Pose poseAt(double t) const;
   Placement rateAt(double t) const override;
   double accelerationBound(const double (&center)[3], double radius, double t0,
                            double t1) const override;
   double angularSpeedBound(double t0, double t1) const override;
   Rounding moreRounding() const override;
 
-  /// @brief The bounds of a span, for many points.
+  /// @brief The bound of the rule of products for the whole step.
+  AccelerationBound accelerationInStep() const;
+  /// @brief A bound for a span: that, or the one from the middle of the span.
   AccelerationBound accelerationIn(double t0, double t1) const;
-  /// @brief That of the points within `radius` of a center.
-  /// @param in  what accelerationIn() gave
-  double boundOf(const AccelerationBound& in, const Vec& center, double radius) const;
+
+  /// @brief Bound on the speed of the link's origin.
+  double speedBound() const;
+
+  /// @brief Whether all joints move at constant speed. Then the bound for the whole step
+  /// is nearly as good as those of spans.
+  bool isSteady() const { return chain_->isSteady(); }
 
   /// @brief Keeps what a path of this motion has at its beginning, for the many queries
   /// of an edge. The motion must not be moved after that.
@@ -130,10 +160,13 @@ class LinkPath : public BoundedMotion {
   const MotionPath* keptPath() const { return kept_.get(); }
 
  private:
-  double turnSpeedIn(double t0, double t1, const JointState& middle) const;
+  double turnSpeedIn(double t0, double t1, const JointRates& middle) const;
   const JointBounds& bounds() const { return chain_->bounds(joint_); }
-  bool isRevolute() const;
-  DerivativeBounds boundsOfBall(const Vec& center, double radius) const;
+  /// The radius of a ball of the link in the frame of the joint, and how far its points
+  /// are from the origin there.
+  LinearBound radiusInJoint() const;
+  LinearBound reachInJoint() const;
+  AccelerationBound accelerationFromMiddle(double t0, double t1) const;
 
   std::shared_ptr<const ChainPath> chain_;
   int joint_;

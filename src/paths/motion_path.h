@@ -36,10 +36,6 @@ struct AccelerationBound {
   const BoundedMotion* motion;
   const char* name;
   double t0, t1;
-  /// If the motion is that of a link of a chain: `turn` and `offset` are those of its
-  /// acceleration in the middle of the span, and this is how much it grows with a radius.
-  const LinkPath* link;
-  double turning;
 
   double of(const Vec& center, double radius) const;
   /// @brief The bound for all points within `radius` of a center that is anywhere on the
@@ -159,6 +155,10 @@ class MotionPath {
 
   /// @brief Whether that bound is the same for all spans.
   bool hasConstantAcceleration() const { return kind_ == Kind::kTurn; }
+
+  /// @brief Whether the bound for the whole step is the same as those of spans, or nearly
+  /// as good. Boxes take it then.
+  bool hasSteadyAcceleration() const;
 
   /// @brief Whether the rotation is the same at all times.
   bool isTranslation() const {

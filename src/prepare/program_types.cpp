@@ -4,6 +4,7 @@
 // alignment of their type, objects of libfcl's layout, classes without RTTI.
 #include <algorithm>
 
+#include "fcl/math/motion/detail/followed_motion.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
 #include "prepare/class_cast.h"
 
@@ -20,7 +21,10 @@ template void copyEntries(const float*, float*);
 
 template <typename S>
 const BoundedMotion* asBoundedMotion(const MotionBase<S>& motion) {
-  return classCast<BoundedMotion>(motion);
+  const auto* const bounded = classCast<BoundedMotion>(motion);
+  const auto* const followed =
+      bounded ? dynamic_cast<const FollowedMotion<S>*>(bounded) : nullptr;
+  return followed ? &followed->path() : bounded;
 }
 
 template const BoundedMotion* asBoundedMotion(const MotionBase<double>&);

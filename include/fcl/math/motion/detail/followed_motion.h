@@ -38,20 +38,24 @@ void setTransform(const BoundedMotion::Placement& placement, Transform3<S>& tf) 
   detail::setTransform(numbers, tf);
 }
 
-/// @brief A motion of the library as FCL's and this library's queries take it.
+/// @brief A motion of the library as FCL's and this library's queries take it. What a
+/// query reads is final: derived classes may not change it.
 template <typename S>
 class FollowedMotion : public MotionBase<S>, public BoundedMotion {
  public:
-  Placement placementAt(double t) const override { return motion_->placementAt(t); }
-  Placement rateAt(double t) const override { return motion_->rateAt(t); }
+  Placement placementAt(double t) const final { return motion_->placementAt(t); }
+  Placement rateAt(double t) const final { return motion_->rateAt(t); }
   double accelerationBound(const double (&center)[3], double radius, double t0,
-                           double t1) const override {
+                           double t1) const final {
     return motion_->accelerationBound(center, radius, t0, t1);
   }
-  double angularSpeedBound(double t0, double t1) const override {
+  double angularSpeedBound(double t0, double t1) const final {
     return motion_->angularSpeedBound(t0, t1);
   }
-  Rounding moreRounding() const override { return motion_->moreRounding(); }
+  Rounding moreRounding() const final { return motion_->moreRounding(); }
+
+  /// @brief What it follows: the same motion, which queries read at once.
+  const BoundedMotion& path() const { return *motion_; }
 
   /// @brief Sets the time of getCurrentTransform(), as FCL's own motions do. It changes
   /// the motion. Queries of this library do not call it.
