@@ -484,11 +484,14 @@ ConvexAdvance::Answer ConvexAdvance::advance(double& t, double t_stop, int& step
 }
 
 double ConvexAdvance::proveContact(double t, double width) const {
-  return provedTimeAfter(t, width, tolerance_.position, speed(), [this](double time) {
-    const ConvexGap gap = gapOf(stateAt(time), 0);
-    return gap.depth > 4 * tolerance_.position ||
-           gap.distance + tolerance_.position <= tolerance_.distance;
-  });
+  return provedTimeAfter(t, width, tolerance_.position, speed(),
+                         [this](double time) { return provesContactAt(time); });
+}
+
+bool ConvexAdvance::provesContactAt(double t) const {
+  const ConvexGap gap = gapOf(stateAt(t), 0);
+  return gap.depth > 4 * tolerance_.position ||
+         gap.distance + tolerance_.position <= tolerance_.distance;
 }
 
 }  // namespace deformable

@@ -64,6 +64,9 @@ class ConvexAdvance {
   /// @brief As TriangleAdvance::proveContact().
   double proveContact(double t, double width) const;
 
+  /// @brief As TriangleAdvance::provesContactAt().
+  bool provesContactAt(double t) const;
+
   /// @brief As TriangleAdvance::directionAt().
   Vec directionAt(double t) const { return gapAt(t).direction; }
 

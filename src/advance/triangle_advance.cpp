@@ -427,14 +427,16 @@ double TriangleAdvance::proveContact(double t, double width) const {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       speed = std::max(speed, norm(state.v[1][j] - state.v[0][i]));
-  return provedTimeAfter(t, width, tolerance_.position, speed, [this](double time) {
-    if (tolerance_.distance > 0)
-      return std::sqrt(nearestAt(time).square) + tolerance_.position <=
-             tolerance_.distance;
-    Vec later[2][3];
-    cornersAt(time, later);
-    return provesCrossing(later);
-  });
+  return provedTimeAfter(t, width, tolerance_.position, speed,
+                         [this](double time) { return provesContactAt(time); });
+}
+
+bool TriangleAdvance::provesContactAt(double t) const {
+  if (tolerance_.distance > 0)
+    return std::sqrt(nearestAt(t).square) + tolerance_.position <= tolerance_.distance;
+  Vec p[2][3];
+  cornersAt(t, p);
+  return provesCrossing(p);
 }
 
 }  // namespace deformable

@@ -111,6 +111,9 @@ class TriangleAdvance {
   /// such time is found.
   double proveContact(double t, double width) const;
 
+  /// @brief Whether a contact is proved at a time.
+  bool provesContactAt(double t) const;
+
   State at(double t) const;
 
   /// @brief The step during which the direction provably keeps the triangles further

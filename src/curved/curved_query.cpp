@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <deque>
+#include <iterator>
 #include <memory>
 #include <unordered_map>
 #include <utility>
@@ -50,8 +51,11 @@ class CurvedTraversal {
     const auto advance = [this](const PartWork& work) { this->advance(work); };
     begin();
     const bool is_for_tasks = isForTasks();
-    while (!works_.isEmpty() && !isCut() && !(is_for_tasks && isLong()))
+    int num_steps = 0;
+    while (!works_.isEmpty() && !isDone() && !(is_for_tasks && isLong())) {
       step(works_.pop(), advance);
+      if (options_.any && contacts_.empty()) lookAhead(++num_steps);
+    }
     if (is_for_tasks && !works_.isEmpty()) runTasks(pieces());
     return finish();
   }
@@ -111,7 +115,54 @@ class CurvedTraversal {
     return tolerance;
   }
 
+  bool isDone() const { return isCut() || (options_.any && !contacts_.empty()); }
+
   bool isCut() const { return counts_.box_tests > options_.most_box_tests; }
+
+  /// Where one contact is enough: looks for one at a time, now and then. Most pairs that
+  /// do not touch are through before.
+  void lookAhead(int num_steps) {
+    constexpr int kFirst = 8;
+    constexpr double kShares[] = {1, 0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875};
+    if (num_looks_ == std::size(kShares) || num_steps != kFirst << num_looks_) return;
+    lookAt(kShares[num_looks_++] * options_.t_max);
+  }
+
+  /// Looks for a pair that is provably in contact at a time. It comes next, from the
+  /// beginning of the step on: its first contact is the answer.
+  void lookAt(double t) {
+    constexpr int kMostSteps = 64;
+    std::vector<PartWork> works;
+    const auto push = [&works](const PartWork& work, double /*least*/) {
+      works.push_back(work);
+    };
+    division_.testAlone({t, t, t, body(0).root(), body(1).root(), 0, 0}, push);
+    for (int i = 0; i < kMostSteps && !works.empty(); ++i) {
+      PartWork work = works.back();
+      works.pop_back();
+      if (!isPair(work)) {
+        division_.divide(work, t, push);
+      } else if (isInContactAt(work, t)) {
+        work.t0 = work.start = 0;
+        work.dive = 1;
+        works_.push(work);
+        return;
+      }
+    }
+  }
+
+  bool isInContactAt(const PartWork& work, double t) const {
+    const MovingBody &a = body(0), &b = body(1);
+    const std::int32_t place[2] = {~work.a.child, ~work.b.child};
+    if (!a.isMesh() || !b.isMesh()) {
+      const MovingConvex x = movingConvexOf(a, place[0]), y = movingConvexOf(b, place[1]);
+      return accepts(indexOf(x), indexOf(y)) &&
+             ConvexAdvance(x, y, 0, t, tolerance_).provesContactAt(t);
+    }
+    const BodyTriangle x = a.triangle(place[0]), y = b.triangle(place[1]);
+    return accepts(x.index, y.index) && mayTouch(x, y) &&
+           TriangleAdvance(a.path(), x, b.path(), y, 0, t, tolerance_).provesContactAt(t);
+  }
 
   /// Whether the work may be done in any order and by several threads. The cells of an
   /// octree are numbered as they are met.
@@ -173,9 +224,20 @@ class CurvedTraversal {
     if (!is_late) works_.push(work);
   }
 
-  /// Whether a free point meets a free edge or another one: they do at a distance only.
-  static bool areFreeOfTouch(const BodyTriangle& a, const BodyTriangle& b) {
-    return a.isFree() && b.isFree() && (a.isFreePoint() || b.isFreePoint());
+  /// Whether two triangles may be in contact. Where bodies have to touch, a free point
+  /// meets neither free edges nor free points.
+  bool mayTouch(const BodyTriangle& a, const BodyTriangle& b) const {
+    return tolerance_.distance > 0 || !a.isFree() || !b.isFree() ||
+           (!a.isFreePoint() && !b.isFreePoint());
+  }
+
+  bool accepts(std::int32_t triangle1, std::int32_t triangle2) const {
+    return !options_.rules || options_.rules->accept(triangle1, triangle2);
+  }
+
+  /// The number of a set's triangle.
+  static std::int32_t indexOf(const MovingConvex& set) {
+    return set.shape ? kNoTriangle : set.triangle.index;
   }
 
   /// Whether the direction of the contact that was found keeps the parts apart until
@@ -296,8 +358,7 @@ class CurvedTraversal {
     assert(work.start <= end);
     if (!a.isMesh() || !b.isMesh()) {
       const MovingConvex x = movingConvexOf(a, place[0]), y = movingConvexOf(b, place[1]);
-      const std::int32_t index[2] = {a.isMesh() ? x.triangle.index : kNoTriangle,
-                                     b.isMesh() ? y.triangle.index : kNoTriangle};
+      const std::int32_t index[2] = {indexOf(x), indexOf(y)};
       if (calm_.areCalmer() && work.steps == 0 && areCalmlyApart(work, end)) return;
       ConvexAdvance pair(x, y, work.start, end, tolerance_);
       pair.suggest(last_direction_);
@@ -308,7 +369,7 @@ class CurvedTraversal {
       return;
     }
     const BodyTriangle x = a.triangle(place[0]), y = b.triangle(place[1]);
-    if (!(tolerance_.distance > 0) && areFreeOfTouch(x, y)) return;
+    if (!mayTouch(x, y)) return;
     TriangleAdvance pair(a.path(), x, b.path(), y, work.start, end, tolerance_);
     CurvedContact* contact = advance(work, {x.index, y.index}, end, pair);
     if (contact) contact->nearest = pair.nearest();
@@ -318,7 +379,7 @@ class CurvedTraversal {
   template <typename Pair>
   CurvedContact* advance(PartWork work, const std::int32_t (&index)[2], double end,
                          Pair& pair) {
-    if (options_.rules && !options_.rules->accept(index[0], index[1])) return nullptr;
+    if (!accepts(index[0], index[1])) return nullptr;
     if (work.steps == 0) ++counts_.triangle_pairs;
     const double t_stop = std::min(end, works_.nextTurn(work));
     PairOfManySpans* const known = manySpansOf(work);
@@ -406,6 +467,8 @@ class CurvedTraversal {
   /// That parted the last pair with a shape or a cell. Others beside it have about the
   /// same.
   Vec last_direction_{0, 0, 0};
+  /// The number of times at which a contact was looked for.
+  std::size_t num_looks_{0};
   /// The number of pairs that did not touch earlier than the contact that was found.
   int num_apart_{0};
   /// The pairs that are advanced in many spans.
@@ -436,6 +499,8 @@ CurvedOptions curvedOptionsOf(const MovingBody& a, const MovingBody& b,
   // The first contact of triangles may be one to ignore.
   wanted.all = all || (are_meshes && options.ignores_initially_closer);
   // The contacts of features are proved.
+  wanted.any = options.query == ContinuousQuery::kAny && !options.only_time &&
+               !options.ignores_initially_closer;
   wanted.proves_contacts = !are_meshes || !wanted.all;
   wanted.t_max = options.t_max;
   wanted.distance = options.min_distance;

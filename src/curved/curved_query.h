@@ -20,6 +20,8 @@ struct CurvedOptions {
   /// Whether every pair of triangles is wanted, with its first time. If not, the first
   /// contact only.
   bool all{false};
+  /// Whether one pair is enough, which need not be the first in contact. Not with `all`.
+  bool any{false};
   /// Width of a contact's time bracket.
   double toc_err{1e-4};
   /// Whether a time is looked for at which the triangles provably cross. If not, brackets

@@ -55,6 +55,14 @@ double distanceAt(const Body& a, const ReferenceMotion& motion_a, int triangle_a
   return std::sqrt(nearestFeatures(p[0], p[1]).square);
 }
 
+Body triangleOf(const Body& body, int index) {
+  TestMesh mesh;
+  for (int c = 0; c < 3; ++c)
+    mesh.vertices.push_back(body.mesh.vertices[body.mesh.triangles[index][c]]);
+  mesh.triangles = {Triangle(0, 1, 2)};
+  return Body(mesh);
+}
+
 // Half of the scenes graze by construction. No contact is late, and none is missed.
 // Reported contacts are as near as promised, by the formulas of the motions.
 TEST(FCL_MOTION_QUERY, againstDenseSamples) {
@@ -392,15 +400,8 @@ TEST(FCL_MOTION_QUERY, allPairsOfTriangles) {
     std::size_t expected = 0, found = 0;
     for (std::size_t j = 0; j < a.mesh.triangles.size(); j += 7)
       for (std::size_t k = 0; k < b.mesh.triangles.size(); k += 5) {
-        const auto alone = [](const Body& body, std::size_t index) {
-          TestMesh mesh;
-          for (int c = 0; c < 3; ++c)
-            mesh.vertices.push_back(body.mesh.vertices[body.mesh.triangles[index][c]]);
-          mesh.triangles = {Triangle(0, 1, 2)};
-          return Body(mesh);
-        };
-        const CurvedAnswer one =
-            ask(alone(a, j), motion_a.path(), alone(b, k), motion_b.path());
+        const CurvedAnswer one = ask(triangleOf(a, static_cast<int>(j)), motion_a.path(),
+                                     triangleOf(b, static_cast<int>(k)), motion_b.path());
         expected += one.contacts.size();
         for (const CurvedContact& contact : answer.contacts)
           if (contact.triangle[0] == static_cast<int>(j) &&
@@ -412,6 +413,48 @@ TEST(FCL_MOTION_QUERY, allPairsOfTriangles) {
     EXPECT_EQ(found, expected);
   }
   EXPECT_GE(contacts, 100u);
+}
+
+// Where one contact is enough: it is there if and only if there is a first one, and it is
+// the first contact of its two triangles, by a query of these alone.
+TEST(FCL_MOTION_QUERY, anyContactIsOne) {
+  const Body bodies[] = {Body(makeIcosphere(3, 0.4)), Body(makeBox({0.4, 0.25, 0.15}, 6)),
+                         Body(makeBox({0.9, 0.02, 0.02}, 2))};
+  CurvedOptions any;
+  any.any = true;
+  int contacts = 0, later = 0, apart = 0;
+  for (int i = 0; i < rounds(200); ++i) {
+    SCOPED_TRACE(i);
+    Random random(9500 + i);
+    const Body &a = bodies[random.index(3)], &b = bodies[random.index(3)];
+    const ReferenceMotion motion_a = randomMotion(random, 0.8);
+    ReferenceMotion motion_b = randomMotion(random, 0.8);
+    if (i % 4 == 0) makeGrazing(random, a, motion_a, b, motion_b);
+    any.distance = i % 3 == 0 ? 0.01 : 0;
+    any.t_max = i % 5 == 0 ? 0.6 : 1;
+    CurvedOptions first = any;
+    first.any = false;
+    const CurvedAnswer found = ask(a, motion_a.path(), b, motion_b.path(), any),
+                       earliest = ask(a, motion_a.path(), b, motion_b.path(), first);
+    ASSERT_EQ(found.contacts.size(), earliest.contacts.size());
+    if (found.contacts.empty()) {
+      ++apart;
+      continue;
+    }
+    ++contacts;
+    const CurvedContact& contact = found.contacts[0];
+    EXPECT_NE(contact.certainty, ContactCertainty::kGivenUp);
+    EXPECT_LE(timeOf(earliest), contact.toc_lo + 1e-9);
+    EXPECT_LE(contact.toc_hi, any.t_max);
+    later += contact.toc_lo > earliest.contacts[0].toc_hi;
+    const Body one = triangleOf(a, contact.triangle[0]),
+               other = triangleOf(b, contact.triangle[1]);
+    EXPECT_NEAR(timeOf(ask(one, motion_a.path(), other, motion_b.path(), first)),
+                contact.toc_lo, 1e-6);
+  }
+  EXPECT_GE(contacts + 1, rounds(60));
+  EXPECT_GE(apart + 1, rounds(20));
+  EXPECT_GE(later + 1, rounds(20));
 }
 
 /// Two features as sets of ids, each sorted, with a's first.

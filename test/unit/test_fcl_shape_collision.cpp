@@ -3,6 +3,7 @@
 // Public queries of shapes, against closed forms; every way to ask.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -28,6 +29,7 @@
 #include "fcl/math/motion/screw_motion.h"
 #include "fcl/math/motion/translation_motion.h"
 #include "fcl/narrowphase/continuous_collision.h"
+#include "sanitizer.h"
 #include "test_models.h"
 
 namespace fcl {
@@ -371,6 +373,53 @@ TEST(ShapeCollide, AllContactsHaveOneForEachTriangle) {
   }
   EXPECT_GT(expected, 8u);
   EXPECT_EQ(result.contacts.size(), expected);
+}
+
+// Of any contact it is only asked whether there is one. What is given is the first
+// contact of its triangle, as in the list of all.
+TEST(ShapeCollide, AnyContactIsInTheList) {
+  const Geometry mesh = makeModel<BVHModel<OBBRSS<double>>>(makeIcosphere(4, .5));
+  const Geometry shapes[] = {std::make_shared<Box<double>>(.8, .1, .1),
+                             std::make_shared<Capsule<double>>(.1, .6),
+                             std::make_shared<Cone<double>>(.3, .5),
+                             std::make_shared<Halfspace<double>>(0, 0, 1, -.4)};
+  Random random(3);
+  int contacts = 0, later = 0, apart = 0;
+  for (int i = 0; i < rounds(160); ++i) {
+    SCOPED_TRACE(i);
+    const auto place = [&random](double size) {
+      Pose pose = turned(3 * random.uniform(0, 1), random.point(1).normalized());
+      pose.translation() = random.point(size);
+      return pose;
+    };
+    const Moving ball{mesh, place(.8), place(.8)},
+        shape{shapes[i % 4], place(.4), place(.4)};
+    Request any = requestOf(ContinuousQuery::kAny);
+    any.min_distance = i % 3 == 0 ? .05 : 0;
+    any.ignore_initially_closer = i % 6 == 0;
+    Request all = any, first = any;
+    all.query = ContinuousQuery::kAll;
+    first.query = ContinuousQuery::kFirst;
+    const Result found = ask(ball, shape, any), list = ask(ball, shape, all),
+                 earliest = ask(ball, shape, first);
+    ASSERT_EQ(found.is_collide, earliest.is_collide);
+    ASSERT_EQ(found.contacts.size(), found.is_collide ? 1U : 0U);
+    apart += !found.is_collide;
+    if (!found.is_collide) continue;
+    ++contacts;
+    const auto& contact = found.contacts[0];
+    EXPECT_EQ(found.time_of_contact, contact.toc_lo);
+    EXPECT_LE(earliest.time_of_contact, contact.toc_lo + kTocErr);
+    later += contact.toc_lo > earliest.time_of_contact + 1e-6;
+    const auto of_list =
+        std::find_if(list.contacts.begin(), list.contacts.end(),
+                     [&](const auto& other) { return other.b1 == contact.b1; });
+    ASSERT_NE(of_list, list.contacts.end());
+    EXPECT_NEAR(of_list->toc_lo, contact.toc_lo, 2 * kTocErr);
+  }
+  EXPECT_GE(contacts + 1, rounds(64));
+  EXPECT_GE(apart + 1, rounds(10));
+  EXPECT_GE(later + 1, rounds(20));
 }
 
 TEST(ShapeCollide, KindsOfContacts) {

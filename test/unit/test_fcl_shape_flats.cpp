@@ -11,8 +11,8 @@
 #include <tuple>
 #include <vector>
 
+#include "curved/curved_query.h"
 #include "curved/overlap_at_start.h"
-#include "curved/shape_contacts.h"
 #include "fcl/common/exception.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/geometry/shape/halfspace.h"
@@ -203,9 +203,10 @@ struct Look {
     is_touch = overlapDeeplyAtStart(mesh.body(), flat.body());
     EXPECT_EQ(overlapDeeplyAtStart(flat.body(), mesh.body()), is_touch);
     deformable::QueryOptions options;
-    options.query = ContinuousQuery::kAny;
-    const auto answer = queryShapeContacts(mesh.body(), flat.body(), options);
-    time = answer.hasContact() ? answer.first.lo : kNever;
+    options.query = ContinuousQuery::kFirst;
+    const auto answer = queryCurved(mesh.body(), flat.body(),
+                                    curvedOptionsOf(mesh.body(), flat.body(), options));
+    time = answer.contacts.empty() ? kNever : answer.contacts[0].toc_lo;
   }
 };
 

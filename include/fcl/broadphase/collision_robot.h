@@ -45,7 +45,8 @@ struct RobotEdgeResult {
   bool is_free{false};
 
   /// @brief The time of the first contact among `pairs`, in fractions of the step; never
-  /// later than the true one. 1 if the edge is free.
+  /// later than the true one. With ContinuousQuery::kAny that of the contact that was
+  /// found. 1 if the edge is free.
   S time_of_contact{1};
 
   /// @brief The joint values at this time.

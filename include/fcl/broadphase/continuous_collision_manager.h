@@ -44,7 +44,8 @@ struct ContinuousManagerResult {
   bool is_collide{false};
 
   /// @brief The time of the first contact among `pairs`, in fractions of the step; never
-  /// later than the true one. 1 without collision.
+  /// later than the true one. With ContinuousQuery::kAny that of the contact that was
+  /// found. 1 without collision.
   S time_of_contact{1};
 
   /// @brief ContinuousQuery::kFirst: the pair that is first in contact. kAny: one pair

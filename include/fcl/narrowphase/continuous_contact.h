@@ -318,8 +318,9 @@ struct ContinuousContacts {
 /// together with the contacts. time_of_contact is never later than the true first time:
 /// it is the beginning of the first contact's bracket, on straight paths made no wider
 /// than an eighth of its end (rounded down if S is float), 0 if the surfaces cross at t =
-/// 0, 1 without collision. For the times of contact_tf1 and contact_tf2 see @ref
-/// continuous_queries.
+/// 0, 1 without collision. With ContinuousQuery::kAny it is that of the contact that was
+/// found, which need not be the first. For the times of contact_tf1 and contact_tf2 see
+/// @ref continuous_queries.
 template <typename S>
 struct ContinuousContactResult : ContinuousCollisionResult<S>, ContinuousContacts<S> {};
 
