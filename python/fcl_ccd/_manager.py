@@ -59,7 +59,8 @@ class ManagerResult(_arguments.Built):
 
     is_collide : bool
     time_of_contact : float
-        Of the first of the pairs, in fractions of the step; never late. 1 without collision.
+        Of the first of the pairs, in fractions of the step; never late (query="any": of the
+        contact that was found). 1 without collision.
     pairs : list of Pair, sorted by time
         query="all": all pairs in contact. "first": the pair that is first in contact. "any":
         one pair in contact.

@@ -56,7 +56,8 @@ class Result(_Asked, _arguments.Built):
         Whether the two touch during the step, or cross or overlap at t = 0.
     time_of_contact : float
         Never later than the first contact, and earlier by at most toc_err. 0 if the
-        two touch, cross or overlap at t = 0. 1 without collision.
+        two touch, cross or overlap at t = 0. 1 without collision. With query="any" that of
+        the contact that was found, which need not be the first.
     contacts : structured array (n,) of contact_dtype, sorted by time
         kind         int32       Kind.VERTEX_FACE or Kind.EDGE_EDGE; with min_distance also
                                  Kind.VERTEX_EDGE and Kind.VERTEX_VERTEX. Of a mesh and a

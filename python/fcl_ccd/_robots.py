@@ -62,7 +62,8 @@ class EdgeResult(_arguments.Built):
 
     is_free : bool, proved if it is True: nothing touches at any time, up to t_max
     time_of_contact : float
-        Of the first of the pairs, in fractions of the step; never late. 1 if it is free.
+        Of the first of the pairs, in fractions of the step; never late (query="any": of the
+        contact that was found). 1 if it is free.
     joint_values : array, the joint values at this time
     pairs : list of RobotPair, sorted by time
         query="any": one pair in contact. "first": the pair that is first in contact. "all":

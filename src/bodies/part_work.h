@@ -40,7 +40,8 @@ struct PartWork {
 /// first one. Where thousands of pairs touch at nearly the same time, the order by start
 /// alone would look at all of them until just before that time, and find no contact whose
 /// direction may part the others. A dive ends with a contact, or when it took as many
-/// pieces as it may: dives take a quarter of the work at most.
+/// pieces as it may: dives take a quarter of the work at most. What a query pushes as a
+/// part of a dive comes next, too.
 ///
 /// If much work waits, pieces that come of one follow it as long as they start in the
 /// same eighth of the step, the last one first: what was found together needs the same

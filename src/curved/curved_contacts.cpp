@@ -488,6 +488,12 @@ void complete(const QueryOptions& options, ContactSink& sink, QueryAnswer& answe
 CurvedAnswer firstTriangles(const MovingBody& a, const MovingBody& b,
                             CurvedAnswer touching, CurvedOptions& wanted) {
   assert(!touching.contacts.empty());
+  if (wanted.any) {
+    // It need not be the first, and very many others may touch by then.
+    wanted.any = false;
+    touching = queryCurved(a, b, wanted);
+    if (touching.contacts.empty()) return touching;
+  }
   wanted.all = true;
   wanted.proves_contacts = false;
   wanted.t_max = touching.contacts.front().toc_hi;
@@ -515,8 +521,7 @@ void addFeatures(const MovingBody& a, const MovingBody& b, CurvedAnswer triangle
                  FeatureContacts& features, QueryAnswer& answer) {
   const FeatureContacts unmoved(a, b, options, false);
   if (options.query == ContinuousQuery::kAny && !wanted.all) {
-    // As a rule features of the first triangles touch as early as these. Then no others
-    // touch earlier.
+    // As a rule features of these triangles touch as early as they do.
     CurvedAnswer first;
     first.contacts.push_back(triangles.contacts.front());
     addFeatures(first, first.contacts[0].toc_hi, options, unmoved, features, answer);

@@ -44,6 +44,8 @@ class CurvedTraversal {
         latest_(options.only_at_start ? 0 : options.t_max),
         works_(options.all ? PartWorkQueue::Order::kAny
                            : PartWorkQueue::Order::kEarliestFirst) {
+    assert(!options.any || !options.all);
+    if (options.any) division_.pushFirstHalfLast();
     if (a.isMesh() && b.isMesh()) division_.setApart(options.distance);
   }
 
@@ -54,7 +56,7 @@ class CurvedTraversal {
     int num_steps = 0;
     while (!works_.isEmpty() && !isDone() && !(is_for_tasks && isLong())) {
       step(works_.pop(), advance);
-      if (options_.any && contacts_.empty()) lookAhead(++num_steps);
+      if (options_.any && contacts_.empty() && latest_ > 0) lookAhead(++num_steps);
     }
     if (is_for_tasks && !works_.isEmpty()) runTasks(pieces());
     return finish();
@@ -132,6 +134,7 @@ class CurvedTraversal {
   /// beginning of the step on: its first contact is the answer.
   void lookAt(double t) {
     constexpr int kMostSteps = 64;
+    if (body(0).root().isTriangle() && body(1).root().isTriangle()) return;
     std::vector<PartWork> works;
     const auto push = [&works](const PartWork& work, double /*least*/) {
       works.push_back(work);
@@ -157,11 +160,11 @@ class CurvedTraversal {
     if (!a.isMesh() || !b.isMesh()) {
       const MovingConvex x = movingConvexOf(a, place[0]), y = movingConvexOf(b, place[1]);
       return accepts(indexOf(x), indexOf(y)) &&
-             ConvexAdvance(x, y, 0, t, tolerance_).provesContactAt(t);
+             ConvexAdvance(x, y, t, t, tolerance_).provesContactAt(t);
     }
     const BodyTriangle x = a.triangle(place[0]), y = b.triangle(place[1]);
     return accepts(x.index, y.index) && mayTouch(x, y) &&
-           TriangleAdvance(a.path(), x, b.path(), y, 0, t, tolerance_).provesContactAt(t);
+           TriangleAdvance(a.path(), x, b.path(), y, t, t, tolerance_).provesContactAt(t);
   }
 
   /// Whether the work may be done in any order and by several threads. The cells of an
@@ -498,9 +501,9 @@ CurvedOptions curvedOptionsOf(const MovingBody& a, const MovingBody& b,
   wanted.toc_err = options.toc_err;
   // The first contact of triangles may be one to ignore.
   wanted.all = all || (are_meshes && options.ignores_initially_closer);
-  // The contacts of features are proved.
   wanted.any = options.query == ContinuousQuery::kAny && !options.only_time &&
                !options.ignores_initially_closer;
+  // The contacts of features are proved.
   wanted.proves_contacts = !are_meshes || !wanted.all;
   wanted.t_max = options.t_max;
   wanted.distance = options.min_distance;

@@ -34,6 +34,10 @@ class PartDivision {
   /// spans.
   void setApart(double apart) { apart_ = apart; }
 
+  /// @brief Pushes the first half of a span after the second one. Where the last work is
+  /// taken first, the first contact that is found is then the first one of its pair.
+  void pushFirstHalfLast() { pushes_first_half_last_ = true; }
+
   static bool isPair(const PartWork& work) {
     return work.a.isTriangle() && work.b.isTriangle();
   }
@@ -167,8 +171,9 @@ class PartDivision {
   template <typename Push>
   void halve(const PartWork& work, Push&& push) {
     const auto [first, second] = halvesOf(work);
+    if (pushes_first_half_last_) testAlone(second, push);
     if (first.start < first.t1) testAlone(first, push);
-    testAlone(second, push);
+    if (!pushes_first_half_last_) testAlone(second, push);
   }
 
   /// Halves the span of parts that may have very many. Where the order does not matter
@@ -194,6 +199,7 @@ class PartDivision {
   PartWindows& windows_;
   const bool prefers_long_spans_;
   double apart_{0};
+  bool pushes_first_half_last_{false};
   AdvanceCounts& counts_;
 };
 

@@ -101,7 +101,7 @@ void MotionPath::setBoundedSpeed() {
   if (link_) {
     translation_speed_ =
         (link_->speedBound() + more_rounding_.translation_rate) * kUpward;
-    extent_ = (translation_speed_ + 2 * more_rounding_.translation) * kUpward;
+    extent_ = (link_->extentBound() + 2 * more_rounding_.translation) * kUpward;
     return;
   }
   const auto acceleration = [this](double t0, double t1) {

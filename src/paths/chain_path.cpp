@@ -367,7 +367,7 @@ AccelerationBound LinkPath::accelerationIn(double t0, double t1) const {
   const AccelerationBound in_step = accelerationInStep();
   if (t0 == 0 && t1 == 1) return in_step;
   const AccelerationBound from_middle = accelerationFromMiddle(t0, t1);
-  const double near = kPart * bounds().reach;
+  const double reach = bounds().reach, near = reach > 0 ? kPart * reach : 1;
   return in_step.of({0, 0, 0}, near) < from_middle.of({0, 0, 0}, near) ? in_step
                                                                        : from_middle;
 }
@@ -393,6 +393,12 @@ double LinkPath::speedBound() const {
   const JointBounds& of = bounds();
   return (of.translation.first + of.rotation.first * norm(pose_.pose.translation)) *
          kUpward;
+}
+
+double LinkPath::extentBound() const {
+  const double lengths = bounds().reach - norm(chain_->base().translation) +
+                         norm(pose_.pose.translation) + 8 * kUnit * bounds().reach;
+  return std::min(speedBound(), 2 * lengths * kUpward);
 }
 
 double LinkPath::angularSpeedBound(double t0, double t1) const {

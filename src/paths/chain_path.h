@@ -146,8 +146,10 @@ class LinkPath : public BoundedMotion {
   /// @brief A bound for a span: that, or the one from the middle of the span.
   AccelerationBound accelerationIn(double t0, double t1) const;
 
-  /// @brief Bound on the speed of the link's origin.
+  /// @brief Bounds on the speed of the link's origin, and on how far it goes from where
+  /// it begins.
   double speedBound() const;
+  double extentBound() const;
 
   /// @brief Whether all joints move at constant speed. Then the bound for the whole step
   /// is nearly as good as those of spans.

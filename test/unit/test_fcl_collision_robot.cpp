@@ -106,6 +106,9 @@ TEST(CollisionRobot, NoStateOnAFreeEdgeTouches) {
                ASSERT_LE(scene.distance(bodiesOf(scene, first.pairs.at(0)),
                                         valuesBetween(from, to, first.time_of_contact)),
                          1e-2);
+               ASSERT_LE(scene.distance(bodiesOf(scene, any.pairs.at(0)),
+                                        valuesBetween(from, to, any.time_of_contact)),
+                         1e-2);
                // Each is early by up to toc_err.
                ASSERT_LE(first.time_of_contact, any.time_of_contact + Request().toc_err);
              });

@@ -4,6 +4,7 @@
 // closed forms.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -389,6 +390,41 @@ TEST_F(MotionCollision, FirstAndAnyContactOfFacesThatStayParallel) {
       if (query == ContinuousQuery::kAny) continue;
       EXPECT_LE(result.time_of_contact, time + 1e-15) << i;
     }
+  }
+}
+
+// A deforming mesh that turns: each of its features belongs to one of its triangles,
+// which need not be one of those that were found.
+TEST_F(MotionCollision, AnyContactOfAMeshThatDeforms) {
+  const TestMesh ball = makeIcosphere(3, 0.4);
+  TestMesh wide = ball;
+  for (auto& p : wide.vertices) p = Vector3<double>(1.2 * p[0], 0.8 * p[1], p[2]);
+  const auto cloth = makeModel<DeformableBVHModel<OBBRSS<double>>>(ball, wide);
+  const auto rod = makeModel<Rigid<double>>(makeBox({0.9, 0.02, 0.02}, 4));
+  for (int i = 0; i < 24; ++i) {
+    Pose begin = turned(0.3 * i), end = turned(0.3 * i + 1);
+    begin.translation() = Vector3<double>(0.1 * (i % 5), 0.05 * (i % 3), 0.6);
+    end.translation() = Vector3<double>(0.04 * (i % 7), 0.1 * (i % 2), -0.6);
+    const auto ask = [&](ContinuousQuery query) {
+      ContactRequest request = requestOf<ContactRequest>();
+      request.query = query;
+      ContactResult result;
+      continuousCollide(cloth.get(), kStill, turned(0.5), rod.get(), begin, end, request,
+                        result);
+      return result;
+    };
+    const ContactResult all = ask(ContinuousQuery::kAll),
+                        any = ask(ContinuousQuery::kAny);
+    ASSERT_TRUE(any.is_collide) << i;
+    ASSERT_EQ(any.contacts.size(), 1U);
+    const auto& contact = any.contacts[0];
+    const auto same =
+        std::find_if(all.contacts.begin(), all.contacts.end(), [&](const auto& other) {
+          return other.kind == contact.kind && other.vertices == contact.vertices &&
+                 other.first_on_o1 == contact.first_on_o1;
+        });
+    ASSERT_NE(same, all.contacts.end()) << i;
+    EXPECT_NEAR(same->toc_lo, contact.toc_lo, 2e-4) << i;
   }
 }
 

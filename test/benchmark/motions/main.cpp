@@ -210,7 +210,7 @@ double trueTime(const Query& q, int samples) {
   const double sampled = q.sampledTime(samples);
   const auto motion1 = toFcl(q.motion[0]), motion2 = toFcl(q.motion[1]);
   fcl::ContinuousContactRequest<double> request;
-  request.query = fcl::ContinuousQuery::kAny;
+  request.query = fcl::ContinuousQuery::kFirst;
   request.toc_err = kTocErr;
   fcl::ContinuousContactResult<double> result;
   continuousCollide(&q.body[0]->model, motion1.get(), &q.body[1]->model, motion2.get(),
