@@ -63,7 +63,7 @@ double ratio(Real x, Real bound) {
 
 int pathCases(int count) {
   const char* times = std::getenv("FCL_CCD_TEST_PATHS");
-  return rounds(count) * (times ? std::atoi(times) : 1);
+  return manyRounds(count) * (times ? std::atoi(times) : 1);
 }
 
 RoundingParts roundingParts(const BoundedMotion& motion, const ExactPath& exact,

@@ -128,7 +128,7 @@ TEST(FCL_EMBEDDED_BODIES, provedBodiesHaveNoContact) {
   constexpr std::uint64_t kSeed = 371;
   Random random(kSeed);
   int proved = 0, with_contacts = 0;
-  for (int i = 0; i < test::rounds(150); ++i) {
+  for (int i = 0; i < test::manyRounds(150); ++i) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
     MovingMesh mesh = still(windingSphere(8, 7, 1));
     const double most = i % 2 ? 0.5 : 0.15;

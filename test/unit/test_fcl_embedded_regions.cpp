@@ -535,7 +535,7 @@ TEST(FCL_EMBEDDED_REGIONS, haveNoContact) {
   constexpr std::uint64_t kSeed = 106;
   Random random(kSeed);
   std::size_t large = 0, whole = 0, with_contacts = 0;
-  for (int i = 0; i < test::rounds(3000); ++i) {
+  for (int i = 0; i < test::manyRounds(3000); ++i) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
     MovingMesh mesh = randomSheet(random);
     spoil(mesh, random);

@@ -264,7 +264,7 @@ double distanceAt(const FreeBody& a, const MotionBase<double>& motion_a,
 TEST(FCL_FREE_FEATURES_MOTION, ownTurnsAgainstSamples) {
   Random random(418);
   std::size_t later = 0;
-  for (int i = 0; i < rounds(40); ++i) {
+  for (int i = 0; i < manyRounds(40); ++i) {
     const FreeBody a = randomBody(random, kBodySizes[i % 7], 0.2, OnGrid::kNever),
                    b = randomBody(random, kBodySizes[(i / 7 + 3 * i) % 7], 0.2,
                                   OnGrid::kNever);

@@ -186,7 +186,7 @@ RoundingParts ownRounding(const Robot& robot, int link, Random& random) {
 TEST(FCL_JOINT_CHAIN, saysItsRounding) {
   Random random(7);
   RoundingParts worst{};
-  for (int i = 0; i < rounds(4000); ++i) {
+  for (int i = 0; i < manyRounds(4000); ++i) {
     const Robot robot = randomRobot(random, i % 2 ? Values::kLinear : Values::kPolynomial,
                                     i % 3 ? 3 : 20);
     worst = greatest(worst, ownRounding(robot, lastLink(robot), random));
@@ -291,7 +291,7 @@ TEST(FCL_JOINT_CHAIN, boundsAreReached) {
   const auto meanOf = [&random](Values values, double most_turn, int num_spans) {
     BoundParts worst{}, sum{};
     int count = 0;
-    for (int i = 0; i < rounds(64); ++i) {
+    for (int i = 0; i < manyRounds(64); ++i) {
       const Robot robot = randomRobot(random, values, most_turn);
       const int link = lastLink(robot);
       const double t0 =

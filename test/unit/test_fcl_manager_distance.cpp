@@ -161,7 +161,7 @@ void expectOfCallback(const ManagerScene& scene, const Truth& truth,
 TEST(ContinuousManagerDistance, ScenesOfAllKindsAgainstAllPairs) {
   int apart = 0, in_contact = 0;
   std::size_t num_tested = 0, num_pairs = 0;
-  for (int i = 0; i < rounds(64); ++i) {
+  for (int i = 0; i < manyRounds(64); ++i) {
     SCOPED_TRACE("scene " + std::to_string(i));
     Random random(9000 + std::uint64_t(i));
     const std::size_t count = 2 + random.index(22);

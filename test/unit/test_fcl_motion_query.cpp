@@ -68,7 +68,7 @@ Body triangleOf(const Body& body, int index) {
 TEST(FCL_MOTION_QUERY, againstDenseSamples) {
   const std::vector<Body> bodies = makeBodies();
   int contacts = 0, hits = 0, crossing = 0;
-  for (int i = 0; i < rounds(48); ++i) {
+  for (int i = 0; i < manyRounds(48); ++i) {
     SCOPED_TRACE(i);
     Random random(1000 + i);
     const Body &a = bodies[random.index(4)], &b = bodies[random.index(4)];

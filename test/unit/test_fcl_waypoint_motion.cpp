@@ -300,7 +300,7 @@ TEST(FCL_WAYPOINT_MOTION, saysItsRounding) {
   Random random(7);
   for (const double most_turn : {1e-9, 1e-3, 1., 3.}) {
     RoundingParts worst{};
-    for (int i = 0; i < rounds(2000); ++i) {
+    for (int i = 0; i < manyRounds(2000); ++i) {
       Waypoints waypoints = randomWaypoints(random, most_turn);
       Poses poses = waypoints.poses;
       std::vector<double> times = waypoints.times;
