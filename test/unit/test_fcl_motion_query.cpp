@@ -423,6 +423,7 @@ TEST(FCL_MOTION_QUERY, anyContactIsOne) {
   CurvedOptions any;
   any.any = true;
   int contacts = 0, later = 0, apart = 0;
+  std::uint64_t work = 0, work_of_first = 0;
   for (int i = 0; i < rounds(200); ++i) {
     SCOPED_TRACE(i);
     Random random(9500 + i);
@@ -447,6 +448,8 @@ TEST(FCL_MOTION_QUERY, anyContactIsOne) {
     EXPECT_LE(timeOf(earliest), contact.toc_lo + 1e-9);
     EXPECT_LE(contact.toc_hi, any.t_max);
     later += contact.toc_lo > earliest.contacts[0].toc_hi;
+    work += found.counts.box_tests;
+    work_of_first += earliest.counts.box_tests;
     const Body one = triangleOf(a, contact.triangle[0]),
                other = triangleOf(b, contact.triangle[1]);
     EXPECT_NEAR(timeOf(ask(one, motion_a.path(), other, motion_b.path(), first)),
@@ -455,6 +458,11 @@ TEST(FCL_MOTION_QUERY, anyContactIsOne) {
   EXPECT_GE(contacts + 1, rounds(60));
   EXPECT_GE(apart + 1, rounds(20));
   EXPECT_GE(later + 1, rounds(20));
+  // Looking ahead saves work: without it 0.91 is left here, with it 0.62. The share of
+  // few cases may be any.
+  if (contacts >= 60) {
+    EXPECT_LT(4 * work, 3 * work_of_first);
+  }
 }
 
 /// Two features as sets of ids, each sorted, with a's first.
