@@ -533,7 +533,16 @@ class Step {
       momentum += m * r.cross(free[v] - before_[v]);
       inertia += m * (r.squaredNorm() * fcl::Matrix3d::Identity() - r * r.transpose());
     }
-    const fcl::Vector3d turn = inertia.completeOrthogonalDecomposition().solve(momentum);
+    // Points on a line have no inertia about it, but for rounding: they do not turn about
+    // it.
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(inertia);
+    fcl::Vector3d turn = fcl::Vector3d::Zero();
+    for (int i = 0; i < 3; ++i) {
+      const fcl::Vector3d axis = axes.eigenvectors().col(i);
+      const double about_axis = axes.eigenvalues()[i];
+      if (about_axis > 1e-12 * axes.eigenvalues()[2])
+        turn += axis.dot(momentum) / about_axis * axis;
+    }
     // Less than half a turn: on straight ways the vertices keep the sides that they are
     // on.
     const double angle = options_.min_distance > 0 ? 0 : std::min(turn.norm(), 1.5);

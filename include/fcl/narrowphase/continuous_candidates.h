@@ -122,6 +122,9 @@ bool continuousCandidates(const CollisionGeometry<double>* o1,
                           const MotionBase<double>* motion2,
                           const ContinuousCandidateSink& sink, double min_distance = 0);
 /// @overload
+/// It is a template, so that only a program that calls it compiles FCL's motions in
+/// float.
+template <typename = void>
 bool continuousCandidates(const CollisionGeometry<float>* o1,
                           const MotionBase<float>* motion1,
                           const CollisionGeometry<float>* o2,
@@ -187,12 +190,12 @@ inline bool continuousCandidates(const CollisionGeometry<double>* o1,
   return detail::motionCandidates(o1, motion1, o2, motion2, sink, min_distance);
 }
 
-inline bool continuousCandidates(const CollisionGeometry<float>* o1,
-                                 const MotionBase<float>* motion1,
-                                 const CollisionGeometry<float>* o2,
-                                 const MotionBase<float>* motion2,
-                                 const ContinuousCandidateSink& sink,
-                                 double min_distance) {
+template <typename>
+bool continuousCandidates(const CollisionGeometry<float>* o1,
+                          const MotionBase<float>* motion1,
+                          const CollisionGeometry<float>* o2,
+                          const MotionBase<float>* motion2,
+                          const ContinuousCandidateSink& sink, double min_distance) {
   return detail::motionCandidates(o1, motion1, o2, motion2, sink, min_distance);
 }
 

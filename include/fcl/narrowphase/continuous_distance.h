@@ -206,12 +206,15 @@ inline double continuousDistance(const CollisionGeometry<double>* o1,
   return detail::distanceOfMotions(o1, motion1, o2, motion2, request, result);
 }
 /// @overload
-inline float continuousDistance(const CollisionGeometry<float>* o1,
-                                const MotionBase<float>* motion1,
-                                const CollisionGeometry<float>* o2,
-                                const MotionBase<float>* motion2,
-                                const ContinuousDistanceRequest<float>& request,
-                                ContinuousDistanceResult<float>& result) {
+/// It is a template, so that only a program that calls it compiles FCL's motions in
+/// float.
+template <typename = void>
+float continuousDistance(const CollisionGeometry<float>* o1,
+                         const MotionBase<float>* motion1,
+                         const CollisionGeometry<float>* o2,
+                         const MotionBase<float>* motion2,
+                         const ContinuousDistanceRequest<float>& request,
+                         ContinuousDistanceResult<float>& result) {
   return detail::distanceOfMotions(o1, motion1, o2, motion2, request, result);
 }
 
