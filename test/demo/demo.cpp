@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A cloth falls over a spinning ball and folds; every step of the simulation is a
-// continuous self-collision query, and the contacts it finds move the cloth.
+// A cloth falls over a spinning ball and folds. Each step of the simulation asks for the
+// contacts on the way, and examples/contact_response.h answers them.
 #include <unistd.h>
 
 #include <charconv>
@@ -10,29 +10,37 @@
 #include <cstring>
 #include <deque>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "cloth_over_ball.h"
 #include "demo_pictures.h"
 #include "demo_table.h"
 #include "output_file.h"
-#include "scenes.h"
 
 namespace {
 
 using namespace fcl::test;
 
 const char kUsage[] =
-    "usage: fcl_ccd_demo [OUTPUT_FOLDER] [--frames N] [--resolution N]\n"
+    "usage: fcl_ccd_demo [OUTPUT_FOLDER] [--frames N] [--resolution N] [--states]\n"
+    "                    [--from STATE]\n"
     "A cloth of 2 x resolution^2 triangles (default 104: 21632) falls over a spinning\n"
     "ball for N frames (default 30). Writes frames.png, busiest.png, busiest.ply,\n"
-    "last.ply and frames.csv to OUTPUT_FOLDER (default: the current one).\n";
+    "last.ply and frames.csv to OUTPUT_FOLDER (default: the current one).\n"
+    "--states also writes the state after each frame, such as 12.state. --from goes on\n"
+    "from such a file, N frames more, to the same bits.\n";
 
 struct DemoOptions {
   std::filesystem::path folder{"."};
   int frames{30};
   int resolution{104};
+  bool keeps_states{false};
+  std::string first_state;  // a file, or none
   bool help{false};
 };
 
@@ -64,6 +72,11 @@ DemoOptions parseOptions(int argc, char** argv) {
       options.frames = parseNumber(argument, argv[++i], 1, 100000);
     } else if (argument == "--resolution") {
       options.resolution = parseNumber(argument, argv[++i], 2, 1000);
+    } else if (argument == "--states") {
+      options.keeps_states = true;
+    } else if (argument == "--from") {
+      if (argv[++i] == nullptr) throw UsageError("--from needs a file");
+      options.first_state = argv[i];
     } else if (argument.empty() || argument[0] == '-' || has_folder) {
       throw UsageError("unexpected argument '" + argument + "'");
     } else {
@@ -84,7 +97,7 @@ class Progress {
     if (is_open_) std::fputc('\n', stderr);
   }
 
-  void show(int frame, const FrameReport& report) {
+  void show(int frame, const DemoFrame& report) {
     const auto now = std::chrono::steady_clock::now();
     const double seconds = std::chrono::duration<double>(now - begin_).count();
     const bool is_due = is_terminal_ || seconds >= next_ || frame == frames_;
@@ -107,27 +120,43 @@ class Progress {
 
 /// What a run leaves behind.
 struct Run {
-  std::vector<FrameReport> reports;  // without their contacts
-  std::vector<Snapshot> sheet;       // up to four frames, the last one included
+  std::vector<DemoFrame> frames;  // without their contacts
+  std::vector<Snapshot> sheet;    // up to four frames, the last one included
   Snapshot busiest;
 };
 
-Run simulate(ClothSimulator& simulator, int frames) {
+void writeFile(const std::filesystem::path& path, const std::string& bytes) {
+  fcl_ccd::OutputFile file(path.string());
+  file.write(bytes);
+  file.finish();
+  file.publish();
+}
+
+std::string readFile(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw std::runtime_error("cannot read " + path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+Run simulate(ClothOverBall& scene, const DemoOptions& options) {
   Run run;
-  Progress progress(frames);
-  for (int frame = 1; frame <= frames; ++frame) {
-    FrameReport report = simulator.advanceFrame();
-    const Snapshot snapshot = takeSnapshot(simulator, report, frame);
+  Progress progress(options.frames);
+  for (int i = 1; i <= options.frames; ++i) {
+    DemoFrame frame = scene.advanceFrame();
+    if (options.keeps_states)
+      writeFile(options.folder / (std::to_string(scene.frame()) + ".state"),
+                scene.state());
+    const Snapshot snapshot = takeSnapshot(scene, frame);
     // The last of each third and half way between: 1/3, 1/2, 2/3, 1.
     for (const int sixth : {2, 3, 4, 6})
-      if (frame == (frames * sixth + 5) / 6 &&
-          (run.sheet.empty() || run.sheet.back().frame != frame))
+      if (i == (options.frames * sixth + 5) / 6 &&
+          (run.sheet.empty() || run.sheet.back().frame != snapshot.frame))
         run.sheet.push_back(snapshot);
     if (run.busiest.frame == 0 || snapshot.contacts.size() > run.busiest.contacts.size())
       run.busiest = snapshot;
-    progress.show(frame, report);
-    report.contacts = {};
-    run.reports.push_back(std::move(report));
+    progress.show(i, frame);
+    frame.contacts = {};
+    run.frames.push_back(std::move(frame));
   }
   return run;
 }
@@ -143,13 +172,12 @@ class Files {
       files_.emplace_back((folder / name).string());
   }
 
-  void publish(const ClothSimulator& simulator, const Run& run) {
+  void publish(const ClothOverBall& scene, const Run& run) {
     const std::string contents[] = {
-        encodePng(drawSheet(simulator, run.sheet, 960, 720)),
-        encodePng(drawSnapshot(simulator, run.busiest, 1600, 1200)),
-        encodeSnapshot(simulator, run.busiest),
-        encodeSnapshot(simulator, run.sheet.back()),
-        formatCsv(run.reports, simulator.mesh().triangles.size())};
+        encodePng(drawSheet(scene, run.sheet, 960, 720)),
+        encodePng(drawSnapshot(scene, run.busiest, 1600, 1200)),
+        encodeSnapshot(scene, run.busiest), encodeSnapshot(scene, run.sheet.back()),
+        formatCsv(run.frames)};
     for (std::size_t i = 0; i < files_.size(); ++i) {
       files_[i].write(contents[i]);
       files_[i].finish();
@@ -171,29 +199,31 @@ class Files {
   std::deque<fcl_ccd::OutputFile> files_;  // not movable
 };
 
-/// A cloth that ends on the wrong side of anything means that a contact was missed.
-void requireNoCrossing(const std::vector<FrameReport>& reports) {
-  for (std::size_t i = 0; i < reports.size(); ++i)
-    if (reports[i].crossing || reports[i].unresolved > 0)
+/// A cloth that ends on the wrong side of anything means that a contact was missed. Each
+/// step looks for crossings at its beginning; the last state is looked at here.
+void requireNoCrossing(ClothOverBall& scene, const Run& run) {
+  for (std::size_t i = 0; i < run.frames.size(); ++i)
+    if (run.frames[i].crossing || run.frames[i].unresolved > 0)
       throw std::runtime_error("surfaces cross in frame " + std::to_string(i + 1));
+  if (scene.hasCrossing()) throw std::runtime_error("surfaces cross at the end");
 }
 
 void demo(const DemoOptions& options) {
   fcl_ccd::removeTemporariesOnSignal();
   Files files(options.folder);
-  ClothSimulator simulator = makeClothOverBall(options.resolution);
-  const std::size_t triangles = simulator.mesh().triangles.size();
+  ClothOverBall scene(options.resolution);
+  if (!options.first_state.empty()) scene.setState(readFile(options.first_state));
   std::printf(
       "A cloth of %d triangles falls over a ball: %zu triangles in all, %d frames of %d "
       "steps.\n",
-      2 * options.resolution * options.resolution, triangles, options.frames,
-      simulator.options().steps_per_frame);
+      2 * options.resolution * options.resolution, scene.mesh().triangles.size(),
+      options.frames, ClothOverBall::kStepsPerFrame);
   std::fflush(stdout);
-  const Run run = simulate(simulator, options.frames);
-  std::printf("\n%s\n", formatTable(run.reports, triangles).c_str());
-  files.publish(simulator, run);
+  const Run run = simulate(scene, options);
+  std::printf("\n%s\n", formatTable(run.frames).c_str());
+  files.publish(scene, run);
   files.list(run);
-  requireNoCrossing(run.reports);
+  requireNoCrossing(scene, run);
   std::printf("No step began with surfaces that cross.\n");
 }
 

@@ -5,7 +5,6 @@
 
 #include "mesh_io.h"
 #include "pictures.h"
-#include "scenes.h"
 
 namespace fcl {
 namespace test {
@@ -15,75 +14,86 @@ const std::uint32_t kVertexFaceColour = 0xe63946;
 const std::uint32_t kEdgeEdgeColour = 0x1d3557;
 const std::uint32_t kTextColour = 0x444a52;
 
-std::uint32_t frontColour(int body) {
-  return body == kCloth ? 0x2a9d8f : body == kBall ? 0xb9bec5 : 0xf4f5f7;
+using Body = ClothOverBall::Body;
+
+std::uint32_t frontColour(Body body) {
+  return body == ClothOverBall::kCloth  ? 0x2a9d8f
+         : body == ClothOverBall::kBall ? 0xb9bec5
+                                        : 0xf4f5f7;
 }
 
-std::uint32_t backColour(int body) {
-  return body == kCloth ? 0xe9c46a : frontColour(body);
+std::uint32_t backColour(Body body) {
+  return body == ClothOverBall::kCloth ? 0xe9c46a : frontColour(body);
 }
 
-std::uint32_t contactColour(const FrameContact& contact) {
+std::uint32_t contactColour(const ContinuousContact<double>& contact) {
   return contact.kind == ContinuousContactKind::kVertexFace ? kVertexFaceColour
                                                             : kEdgeEdgeColour;
 }
 
-int bodyOfTriangle(const ClothSimulator& simulator, std::size_t f) {
-  return simulator.bodyOf(simulator.mesh().triangles[f][0]);
+Body bodyOfTriangle(const ClothOverBall& scene, std::size_t f) {
+  return scene.bodyOf(scene.mesh().triangles[f][0]);
 }
 
 /// Calls visit(triangle, colour) for the triangles in contact, vertex-face last so that
 /// its colour wins. The ground's triangles are too large to be coloured.
 template <typename Visit>
-void forEachContactTriangle(const ClothSimulator& simulator, const Snapshot& snapshot,
+void forEachContactTriangle(const ClothOverBall& scene, const Snapshot& snapshot,
                             Visit visit) {
   for (const auto kind :
        {ContinuousContactKind::kEdgeEdge, ContinuousContactKind::kVertexFace})
-    for (const FrameContact& contact : snapshot.contacts)
-      for (const int triangle : contact.triangles) {
+    for (const ContinuousContact<double>& contact : snapshot.contacts)
+      for (const auto triangle : {contact.b1, contact.b2}) {
         const auto f = static_cast<std::size_t>(triangle);
-        if (contact.kind == kind && bodyOfTriangle(simulator, f) != kGround)
+        if (contact.kind == kind && bodyOfTriangle(scene, f) != ClothOverBall::kGround)
           visit(f, contactColour(contact));
       }
 }
 
-PaintedMesh paint(const ClothSimulator& simulator, const Snapshot& snapshot) {
-  PaintedMesh scene;
-  scene.mesh.vertices = snapshot.vertices;
-  scene.mesh.triangles = simulator.mesh().triangles;
-  for (std::size_t f = 0; f < scene.mesh.triangles.size(); ++f) {
-    const int body = bodyOfTriangle(simulator, f);
-    scene.paints.push_back({colourFromHex(frontColour(body)),
-                            colourFromHex(backColour(body)), body == kGround});
+PaintedMesh paint(const ClothOverBall& scene, const Snapshot& snapshot) {
+  PaintedMesh painted;
+  painted.mesh.vertices = snapshot.vertices;
+  painted.mesh.triangles = scene.mesh().triangles;
+  for (std::size_t f = 0; f < painted.mesh.triangles.size(); ++f) {
+    const Body body = bodyOfTriangle(scene, f);
+    painted.paints.push_back({colourFromHex(frontColour(body)),
+                              colourFromHex(backColour(body)),
+                              body == ClothOverBall::kGround});
   }
-  forEachContactTriangle(simulator, snapshot, [&](std::size_t f, std::uint32_t colour) {
-    Paint& paint = scene.paints[f];
-    const int body = bodyOfTriangle(simulator, f);
+  forEachContactTriangle(scene, snapshot, [&](std::size_t f, std::uint32_t colour) {
+    Paint& paint = painted.paints[f];
+    const Body body = bodyOfTriangle(scene, f);
     const auto tinted = [&](std::uint32_t own) -> Colour {
       return 0.4f * colourFromHex(own) + 0.6f * colourFromHex(colour);
     };
     paint.front = tinted(frontColour(body));
     paint.back = tinted(backColour(body));
   });
-  return scene;
+  return painted;
 }
 
-/// A dot where each pair touched the cloth, at its place at the end of the frame.
-std::vector<Marker> markers(const ClothSimulator& simulator, const Snapshot& snapshot) {
+/// A dot at each feature of the cloth that touched: a vertex, or the middle of an edge.
+std::vector<Marker> markers(const ClothOverBall& scene, const Snapshot& snapshot) {
   std::vector<Marker> dots;
-  for (const FrameContact& contact : snapshot.contacts)
-    for (const double side : {1.0, -1.0}) {
-      Marker dot{Vector3<double>::Zero(), colourFromHex(contactColour(contact))};
-      bool is_on_cloth = false;
-      for (std::size_t k = 0; k < 4; ++k) {
-        const double weight = side * contact.where.weights[k];
-        const auto v = static_cast<std::size_t>(contact.where.vertices[k]);
-        if (weight <= 0) continue;
-        dot.position += weight * snapshot.vertices[v];
-        is_on_cloth = simulator.bodyOf(v) == kCloth;
-      }
-      if (is_on_cloth) dots.push_back(dot);
+  const auto add = [&](const ContinuousContact<double>& contact, std::size_t first,
+                       std::size_t count) {
+    Marker dot{Vector3<double>::Zero(), colourFromHex(contactColour(contact))};
+    bool is_on_cloth = true;
+    for (std::size_t k = first; k < first + count; ++k) {
+      const auto v = static_cast<std::size_t>(contact.vertices[k]);
+      dot.position += snapshot.vertices[v] / static_cast<double>(count);
+      is_on_cloth &= scene.bodyOf(v) == ClothOverBall::kCloth;
     }
+    if (is_on_cloth) dots.push_back(dot);
+  };
+  for (const ContinuousContact<double>& contact : snapshot.contacts) {
+    if (contact.kind == ContinuousContactKind::kVertexFace) {
+      add(contact, 0, 1);
+    } else {
+      add(contact, 0, 2);
+      add(contact, 2, 2);
+    }
+  }
   return dots;
 }
 
@@ -102,13 +112,12 @@ void writeCaption(Image& image, const Snapshot& snapshot) {
 
 }  // namespace
 
-Snapshot takeSnapshot(const ClothSimulator& simulator, const FrameReport& report,
-                      int frame) {
-  return {frame,           simulator.time(),         report.vertex_face, report.edge_edge,
-          report.contacts, simulator.mesh().vertices};
+Snapshot takeSnapshot(const ClothOverBall& scene, const DemoFrame& frame) {
+  return {scene.frame(),   scene.time(),   frame.vertex_face,
+          frame.edge_edge, frame.contacts, scene.mesh().vertices};
 }
 
-Image drawSnapshot(const ClothSimulator& simulator, const Snapshot& snapshot, int width,
+Image drawSnapshot(const ClothOverBall& scene, const Snapshot& snapshot, int width,
                    int height) {
   Camera camera;
   camera.eye = Vector3<double>(1.75, -2.1, 1.5);
@@ -118,13 +127,12 @@ Image drawSnapshot(const ClothSimulator& simulator, const Snapshot& snapshot, in
   options.width = width;
   options.height = height;
   options.marker_radius = width / 800.0;
-  Image image =
-      render(paint(simulator, snapshot), markers(simulator, snapshot), camera, options);
+  Image image = render(paint(scene, snapshot), markers(scene, snapshot), camera, options);
   writeCaption(image, snapshot);
   return image;
 }
 
-Image drawSheet(const ClothSimulator& simulator, const std::vector<Snapshot>& snapshots,
+Image drawSheet(const ClothOverBall& scene, const std::vector<Snapshot>& snapshots,
                 int width, int height) {
   const int count = static_cast<int>(snapshots.size());
   const int columns = count > 1 ? 2 : 1;
@@ -132,12 +140,12 @@ Image drawSheet(const ClothSimulator& simulator, const std::vector<Snapshot>& sn
   Image sheet(columns * width, rows * height, RenderOptions().background);
   for (int i = 0; i < count; ++i)
     paste(sheet,
-          drawSnapshot(simulator, snapshots[static_cast<std::size_t>(i)], width, height),
+          drawSnapshot(scene, snapshots[static_cast<std::size_t>(i)], width, height),
           (i % columns) * width, (i / columns) * height);
   return sheet;
 }
 
-std::string encodeSnapshot(const ClothSimulator& simulator, const Snapshot& snapshot) {
+std::string encodeSnapshot(const ClothOverBall& scene, const Snapshot& snapshot) {
   const auto bytes = [](std::uint32_t rgb) {
     return fcl_ccd::Colour{{static_cast<std::uint8_t>(rgb >> 16),
                             static_cast<std::uint8_t>(rgb >> 8),
@@ -148,13 +156,13 @@ std::string encodeSnapshot(const ClothSimulator& simulator, const Snapshot& snap
   for (std::size_t v = 0; v < snapshot.vertices.size(); ++v) {
     const Vector3<double>& p = snapshot.vertices[v];
     mesh.vertices.push_back({{p[0], p[1], p[2]}});
-    colours.push_back(bytes(frontColour(simulator.bodyOf(v))));
+    colours.push_back(bytes(frontColour(scene.bodyOf(v))));
   }
-  const auto& triangles = simulator.mesh().triangles;
+  const auto& triangles = scene.mesh().triangles;
   for (const Triangle& t : triangles)
     mesh.triangles.push_back(
         {{static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2])}});
-  forEachContactTriangle(simulator, snapshot, [&](std::size_t f, std::uint32_t colour) {
+  forEachContactTriangle(scene, snapshot, [&](std::size_t f, std::uint32_t colour) {
     for (int k = 0; k < 3; ++k) colours[triangles[f][k]] = bytes(colour);
   });
   return fcl_ccd::encodePaintedPly(mesh, colours);

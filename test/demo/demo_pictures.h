@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cloth_simulator.h"
+#include "cloth_over_ball.h"
 #include "pictures.h"
 
 namespace fcl {
@@ -17,24 +17,23 @@ struct Snapshot {
   double time{0};  // s
   std::size_t vertex_face{0};
   std::size_t edge_edge{0};
-  std::vector<FrameContact> contacts;
+  std::vector<ContinuousContact<double>> contacts;
   std::vector<Vector3<double>> vertices;
 };
 
 /// @brief Keeps what advanceFrame() just did.
-Snapshot takeSnapshot(const ClothSimulator& simulator, const FrameReport& report,
-                      int frame);
+Snapshot takeSnapshot(const ClothOverBall& scene, const DemoFrame& frame);
 
 /// @brief A picture of the frame: vertex-face contacts red, edge-edge contacts dark blue.
-Image drawSnapshot(const ClothSimulator& simulator, const Snapshot& snapshot, int width,
+Image drawSnapshot(const ClothOverBall& scene, const Snapshot& snapshot, int width,
                    int height);
 
 /// @brief The pictures in rows of two, each of the given size.
-Image drawSheet(const ClothSimulator& simulator, const std::vector<Snapshot>& snapshots,
+Image drawSheet(const ClothOverBall& scene, const std::vector<Snapshot>& snapshots,
                 int width, int height);
 
 /// @brief The bytes of a PLY of the frame with the same colours.
-std::string encodeSnapshot(const ClothSimulator& simulator, const Snapshot& snapshot);
+std::string encodeSnapshot(const ClothOverBall& scene, const Snapshot& snapshot);
 
 }  // namespace test
 }  // namespace fcl

@@ -10,10 +10,13 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "fcl/common/exception.h"
 #include "fragile_designs.h"
 #include "paper_scenes.h"
+#include "proximity.h"
 #include "scene_measure.h"
 
 namespace fcl {
@@ -204,6 +207,59 @@ TEST(FCL_PAPER_SCENES, aSinkEndsTheScene) {
   generateScene(SceneKind::kBalls, smallScene(SceneKind::kBalls),
                 [&](const SceneFrame&) { return ++frames < 2; });
   EXPECT_EQ(frames, 2);
+}
+
+TEST(FCL_PROXIMITY, nearPairsAreThoseOfAllPairs) {
+  const TestMesh mesh = makeTriangleSoup(120, 0.5, 0.3, 3);
+  std::vector<char> is_movable(mesh.vertices.size(), 1);
+  for (std::size_t v = 0; v < 180; ++v) is_movable[v] = 0;
+  const double distance = 0.04;
+  std::vector<std::pair<int, int>> expected;
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+      const Triangle& t = mesh.triangles[f];
+      if (v == t[0] || v == t[1] || v == t[2]) continue;
+      if (!is_movable[v] && !is_movable[t[0]]) continue;
+      const Vec w = closestWeights(mesh.vertices[v], mesh.vertices[t[0]],
+                                   mesh.vertices[t[1]], mesh.vertices[t[2]]);
+      const Vec closest = w[0] * mesh.vertices[t[0]] + w[1] * mesh.vertices[t[1]] +
+                          w[2] * mesh.vertices[t[2]];
+      if ((closest - mesh.vertices[v]).norm() < distance)
+        expected.emplace_back(static_cast<int>(v), static_cast<int>(f));
+    }
+  ASSERT_GT(expected.size(), 20u);
+  for (const double cell_size : {0.02, 0.1, 2.0}) {
+    std::vector<std::pair<int, int>> found;
+    for (const NearPair& pair :
+         findNearPairs(mesh.vertices, mesh.triangles, is_movable, distance, cell_size))
+      found.emplace_back(pair.vertex, pair.triangle);
+    EXPECT_EQ(found, expected) << "cell size " << cell_size;
+  }
+}
+
+TEST(FCL_PROXIMITY, closestPointIsNotFartherThanAnySample) {
+  Random random(11);
+  for (int i = 0; i < 200; ++i) {
+    const Vec a = random.point(1), b = random.point(1), c = random.point(1);
+    const Vec p = random.point(2);
+    const Vec w = closestWeights(p, a, b, c);
+    EXPECT_GE(w.minCoeff(), 0);
+    EXPECT_NEAR(w.sum(), 1, 1e-12);
+    const double distance = (w[0] * a + w[1] * b + w[2] * c - p).norm();
+    for (int s = 0; s < 50; ++s) {
+      const double x = random.uniform(0, 1);
+      const double y = random.uniform(0, 1 - x);
+      EXPECT_LE(distance, ((1 - x - y) * a + x * b + y * c - p).norm() + 1e-12);
+    }
+  }
+}
+
+TEST(FCL_CLOTH_SIMULATOR, bodiesCannotBeAddedToARunningScene) {
+  ClothSimulator simulator{SimulatorOptions()};
+  const TestMesh sheet = makeSheet(4, 4);
+  simulator.addCloth(sheet, sheet.vertices);
+  simulator.advanceFrame();
+  EXPECT_THROW(simulator.addObstacle(makeBox(Vec(1, 1, 1))), Exception);
 }
 
 TEST(FCL_FRAGILE_SHELL, partsAreClosedAndApart) {

@@ -7,14 +7,15 @@
 #include <cstdio>
 #include <fstream>
 #include <map>
+#include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
-#include "cloth_simulator.h"
+#include "cloth_over_ball.h"
 #include "fcl/common/exception.h"
 #include "mesh_generators.h"
 #include "pictures.h"
-#include "proximity.h"
-#include "scenes.h"
 
 namespace fcl {
 namespace test {
@@ -133,103 +134,59 @@ TEST(FCL_TEST_SUPPORT, append_and_transform) {
   EXPECT_EQ(uniqueEdges(mesh.triangles).size(), 10u);
 }
 
-TEST(FCL_TEST_SUPPORT, near_pairs_are_those_of_all_pairs) {
-  const TestMesh mesh = makeTriangleSoup(120, 0.5, 0.3, 3);
-  std::vector<char> is_movable(mesh.vertices.size(), 1);
-  for (std::size_t v = 0; v < 180; ++v) is_movable[v] = 0;
-  const double distance = 0.04;
-  std::vector<std::pair<int, int>> expected;
-  for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
-    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-      const Triangle& t = mesh.triangles[f];
-      if (v == t[0] || v == t[1] || v == t[2]) continue;
-      if (!is_movable[v] && !is_movable[t[0]]) continue;
-      const Vec w = closestWeights(mesh.vertices[v], mesh.vertices[t[0]],
-                                   mesh.vertices[t[1]], mesh.vertices[t[2]]);
-      const Vec closest = w[0] * mesh.vertices[t[0]] + w[1] * mesh.vertices[t[1]] +
-                          w[2] * mesh.vertices[t[2]];
-      if ((closest - mesh.vertices[v]).norm() < distance)
-        expected.emplace_back(static_cast<int>(v), static_cast<int>(f));
-    }
-  ASSERT_GT(expected.size(), 20u);
-  for (const double cell_size : {0.02, 0.1, 2.0}) {
-    std::vector<std::pair<int, int>> found;
-    for (const NearPair& pair :
-         findNearPairs(mesh.vertices, mesh.triangles, is_movable, distance, cell_size))
-      found.emplace_back(pair.vertex, pair.triangle);
-    EXPECT_EQ(found, expected) << "cell size " << cell_size;
+TEST(FCL_TEST_SUPPORT, clothTouchesFoldsAndStaysWhole) {
+  ClothOverBall scene(32);
+  const std::vector<Vec> rest = scene.mesh().vertices;
+  bool was_free = false, has_touched = false;
+  std::size_t self = 0;
+  for (int i = 1; i <= 24; ++i) {
+    const DemoFrame frame = scene.advanceFrame();
+    EXPECT_FALSE(frame.crossing) << "frame " << i;
+    EXPECT_EQ(frame.unresolved, 0u) << "frame " << i;
+    EXPECT_EQ(frame.vertex_face + frame.edge_edge, frame.contacts.size());
+    EXPECT_EQ(frame.first_contact < 1, !frame.contacts.empty());
+    was_free |= frame.contacts.empty();
+    has_touched |= !frame.contacts.empty();
+    self += frame.self;
   }
+  EXPECT_FALSE(scene.hasCrossing());
+  EXPECT_TRUE(was_free && has_touched);
+  EXPECT_GT(self, 0u);
+  const TestMesh& mesh = scene.mesh();
+  // Position based dynamics stretches while an impact spreads. An unstable cloth goes far
+  // beyond that.
+  for (const auto& e : uniqueEdges(mesh.triangles)) {
+    const auto v = static_cast<std::size_t>(e[0]), w = static_cast<std::size_t>(e[1]);
+    EXPECT_LT((mesh.vertices[v] - mesh.vertices[w]).norm(),
+              2 * (rest[v] - rest[w]).norm());
+  }
+  // The cloth lies on ground and ball: above the ground, not above the ball's top.
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    if (scene.bodyOf(v) == ClothOverBall::kCloth) {
+      EXPECT_GT(mesh.vertices[v][2], 0);
+      EXPECT_LT(mesh.vertices[v][2], .6);
+    }
 }
 
-TEST(FCL_TEST_SUPPORT, closest_point_is_not_farther_than_any_sample) {
-  Random random(11);
-  for (int i = 0; i < 200; ++i) {
-    const Vec a = random.point(1), b = random.point(1), c = random.point(1);
-    const Vec p = random.point(2);
-    const Vec w = closestWeights(p, a, b, c);
-    EXPECT_GE(w.minCoeff(), 0);
-    EXPECT_NEAR(w.sum(), 1, 1e-12);
-    const double distance = (w[0] * a + w[1] * b + w[2] * c - p).norm();
-    for (int s = 0; s < 50; ++s) {
-      const double x = random.uniform(0, 1);
-      const double y = random.uniform(0, 1 - x);
-      EXPECT_LE(distance, ((1 - x - y) * a + x * b + y * c - p).norm() + 1e-12);
-    }
-  }
-}
-
-TEST(FCL_TEST_SUPPORT, simulation_is_deterministic) {
-  ClothSimulator first = makeClothOverBall(16);
-  ClothSimulator second = makeClothOverBall(16);
-  ClothSimulator other_seed = makeClothOverBall(16, 2);
+TEST(FCL_TEST_SUPPORT, clothGoesOnFromAnyFrame) {
+  ClothOverBall scene(16);
+  std::vector<std::string> states{scene.state()};
   std::size_t contacts = 0;
-  for (int frame = 0; frame < 6; ++frame) {
-    const FrameReport a = first.advanceFrame();
-    const FrameReport b = second.advanceFrame();
-    contacts += a.contacts.size();
-    other_seed.advanceFrame();
-    ASSERT_EQ(first.mesh().vertices, second.mesh().vertices) << "frame " << frame;
-    ASSERT_EQ(a.contacts.size(), b.contacts.size()) << "frame " << frame;
-    ASSERT_EQ(a.first_contact, b.first_contact) << "frame " << frame;
+  for (int frame = 0; frame < 12; ++frame) {
+    contacts += scene.advanceFrame().contacts.size();
+    states.push_back(scene.state());
   }
   EXPECT_GT(contacts, 0u);
-  EXPECT_NE(first.mesh().vertices, other_seed.mesh().vertices);
-}
-
-TEST(FCL_TEST_SUPPORT, cloth_touches_folds_and_stays_whole) {
-  ClothSimulator simulator = makeClothOverBall(32);
-  bool was_free = false;
-  bool has_touched = false;
-  std::size_t self = 0;
-  for (int frame = 1; frame <= 24; ++frame) {
-    const FrameReport report = simulator.advanceFrame();
-    EXPECT_FALSE(report.crossing) << "frame " << frame;
-    EXPECT_EQ(report.unresolved, 0u) << "frame " << frame;
-    EXPECT_EQ(report.vertex_face + report.edge_edge, report.contacts.size());
-    EXPECT_LE(report.first_contact, 1);
-    EXPECT_EQ(report.first_contact < 1, !report.contacts.empty());
-    was_free = was_free || report.contacts.empty();
-    has_touched = has_touched || !report.contacts.empty();
-    self += report.self;
-    for (const Vec& v : simulator.mesh().vertices) ASSERT_TRUE(v.allFinite());
-    // PBD stretches while an impact spreads. An unstable cloth goes far beyond that.
-    EXPECT_LT(simulator.maxStretch(), 2) << "frame " << frame;
-  }
-  EXPECT_TRUE(was_free);
-  EXPECT_TRUE(has_touched);
-  EXPECT_GT(self, 0u);
-  // The cloth lies on ground and ball: above the ground, not above the ball's top.
-  for (std::size_t v = 0; v < simulator.mesh().vertices.size(); ++v)
-    if (simulator.bodyOf(v) == kCloth) {
-      EXPECT_GT(simulator.mesh().vertices[v][2], 0);
-      EXPECT_LT(simulator.mesh().vertices[v][2], 0.6);
+  for (const std::size_t first : {0, 6, 9}) {
+    ClothOverBall other(16);
+    other.setState(states[first]);
+    for (std::size_t frame = first + 1; frame < states.size(); ++frame) {
+      other.advanceFrame();
+      ASSERT_EQ(other.state(), states[frame]) << "from " << first << " to " << frame;
     }
-}
-
-TEST(FCL_TEST_SUPPORT, bodies_cannot_be_added_to_a_running_scene) {
-  ClothSimulator simulator = makeClothOverBall(4);
-  simulator.advanceFrame();
-  EXPECT_THROW(simulator.addObstacle(makeBox(Vec(1, 1, 1))), Exception);
+  }
+  EXPECT_THROW(ClothOverBall(17).setState(states[0]), std::runtime_error);
+  EXPECT_THROW(scene.setState(""), std::runtime_error);
 }
 
 PaintedMesh paintedSphere() {

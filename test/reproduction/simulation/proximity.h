@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef FCL_TEST_SUPPORT_PROXIMITY_H
-#define FCL_TEST_SUPPORT_PROXIMITY_H
+#ifndef FCL_TEST_REPRODUCTION_PROXIMITY_H
+#define FCL_TEST_REPRODUCTION_PROXIMITY_H
 
 #include <vector>
 

@@ -11,8 +11,8 @@
 // - if that does not help, because obstacles crush what is between them, the obstacles
 //   stop for the step, the surroundings of a contact are held with it, and in the end
 //   everything is held.
-#ifndef FCL_TEST_SUPPORT_CLOTH_SIMULATOR_H
-#define FCL_TEST_SUPPORT_CLOTH_SIMULATOR_H
+#ifndef FCL_TEST_REPRODUCTION_CLOTH_SIMULATOR_H
+#define FCL_TEST_REPRODUCTION_CLOTH_SIMULATOR_H
 
 #include <array>
 #include <cstdint>

@@ -3,8 +3,8 @@
 // The surface of a brittle body: a wall between two layers, made of pieces that are
 // bonded along their borders. When bonds break, pieces separate: a vertex on the crack
 // becomes two or more, and the crack gets walls of its own, so that each part is closed.
-#ifndef FCL_TEST_SUPPORT_FRAGILE_SHELL_H
-#define FCL_TEST_SUPPORT_FRAGILE_SHELL_H
+#ifndef FCL_TEST_REPRODUCTION_FRAGILE_SHELL_H
+#define FCL_TEST_REPRODUCTION_FRAGILE_SHELL_H
 
 #include <cstddef>
 #include <vector>

@@ -4,8 +4,8 @@
 // side becomes an ellipsoid. After Mueller et al. 2005, "Meshless Deformations Based on
 // Shape Matching", with its linear deformations. Here the map is the state, so that a
 // contact moves the whole solid at once, however many vertices it has.
-#ifndef FCL_TEST_SUPPORT_AFFINE_BODY_H
-#define FCL_TEST_SUPPORT_AFFINE_BODY_H
+#ifndef FCL_TEST_REPRODUCTION_AFFINE_BODY_H
+#define FCL_TEST_REPRODUCTION_AFFINE_BODY_H
 
 #include <cmath>
 #include <limits>
