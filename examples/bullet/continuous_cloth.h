@@ -7,6 +7,7 @@
 #ifndef CONTINUOUS_CLOTH_H
 #define CONTINUOUS_CLOTH_H
 
+#include <chrono>
 #include <cstddef>
 #include <stdexcept>
 #include <vector>
@@ -71,9 +72,12 @@ class ContinuousCloth {
                 positions_.end());
     for (std::size_t i = 0; i < obstacles.size(); ++i)
       next[count + i] = contact_response::roundedToFloat(obstacles[i]);
+    const auto begin = std::chrono::steady_clock::now();
     const contact_response::Report report =
         contact_response::respond(model_, options_, inverse_masses_, positions_,
                                   static_cast<double>(time), next, velocities, &memory_);
+    seconds_ =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     for (std::size_t i = 0; i < count; ++i) {
       btSoftBody::Node& node = body_.m_nodes[static_cast<int>(i)];
       node.m_x = vectorOf(next[i]);
@@ -85,6 +89,10 @@ class ContinuousCloth {
 
   /// Nodes of the body, then vertices of obstacles, after the last step.
   const Positions& positions() const { return positions_; }
+  /// Of these.
+  const std::vector<fcl::Triangle>& triangles() const { return triangles_; }
+  /// What contacts took of the last step: queries and response.
+  double secondsOfContacts() const { return seconds_; }
 
  private:
   static btVector3 vectorOf(const fcl::Vector3d& p) {
@@ -108,6 +116,7 @@ class ContinuousCloth {
   Positions positions_;
   std::vector<fcl::Triangle> triangles_;
   std::vector<double> inverse_masses_;
+  double seconds_{0};
 };
 
 #endif

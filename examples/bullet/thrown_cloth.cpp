@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A cloth of Bullet that is thrown at a sheet of triangles without thickness, beside a
-// block that turns: by Bullet alone, and with the continuous step around it. Contacts on
-// the way that was taken, which nobody answered, are counted by the exact query.
+// A cloth of Bullet that is thrown at a sheet of triangles without thickness, where a
+// rigid body of triangles turns, and one that falls on its edge and folds onto itself: by
+// Bullet alone, and with the continuous step around it. Contacts on the way that was
+// taken, which nobody answered, are counted by the exact query.
+//   example_thrown_cloth [STEPS] [VERTICES OF A SIDE] [FOLDER FOR THE LAST FRAMES]
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
@@ -17,6 +21,7 @@
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 
 #include "continuous_cloth.h"
+#include "obj_file.h"
 
 namespace {
 
@@ -44,15 +49,11 @@ Mesh sheet() {
   return mesh;
 }
 
-/// A block that turns about the z axis, at a time.
-Mesh block(double time) {
+/// A block above the sheet, in its own coordinates.
+Mesh block() {
   Mesh mesh;
-  const double c = std::cos(2 * time), s = std::sin(2 * time);
-  for (int i = 0; i < 8; ++i) {
-    const double x = i & 1 ? .3 : -.3, y = i & 2 ? .2 : -.2, z = i & 4 ? .5 : .2;
-    mesh.vertices.emplace_back(static_cast<float>(c * x - s * y),
-                               static_cast<float>(s * x + c * y), static_cast<float>(z));
-  }
+  for (int i = 0; i < 8; ++i)
+    mesh.vertices.emplace_back(i & 1 ? .3 : -.3, i & 2 ? .2 : -.2, i & 4 ? .5 : .2);
   const std::size_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                    {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
   for (const auto& q : quads) {
@@ -62,13 +63,78 @@ Mesh block(double time) {
   return mesh;
 }
 
+/// It turns about the z axis.
+btTransform poseOfBlock(double time) {
+  return btTransform(btQuaternion({0, 0, 1}, static_cast<float>(2 * time)));
+}
+
+btVector3 vectorOf(const fcl::Vector3d& p) {
+  return {static_cast<float>(p.x()), static_cast<float>(p.y()),
+          static_cast<float>(p.z())};
+}
+
+/// A rigid body of triangles.
+struct MeshBody {
+  MeshBody(btDynamicsWorld& world, const Mesh& mesh) : world(world), mesh(mesh) {
+    for (const fcl::Triangle& t : mesh.triangles)
+      triangles.addTriangle(vectorOf(mesh.vertices[t[0]]), vectorOf(mesh.vertices[t[1]]),
+                            vectorOf(mesh.vertices[t[2]]));
+    shape = std::make_unique<btBvhTriangleMeshShape>(&triangles, true);
+    body = std::make_unique<btRigidBody>(0.f, nullptr, shape.get());
+    body->setCollisionFlags(body->getCollisionFlags() |
+                            btCollisionObject::CF_KINEMATIC_OBJECT);
+    world.addRigidBody(body.get());
+  }
+  ~MeshBody() { world.removeRigidBody(body.get()); }
+
+  /// Moves it, and adds its vertices there.
+  void moveTo(const btTransform& pose, Positions& positions) {
+    body->setWorldTransform(pose);
+    for (const fcl::Vector3d& p : mesh.vertices) {
+      const btVector3 x = pose * vectorOf(p);
+      positions.emplace_back(x.x(), x.y(), x.z());
+    }
+  }
+
+  btDynamicsWorld& world;
+  Mesh mesh;
+  btTriangleMesh triangles;
+  std::unique_ptr<btBvhTriangleMeshShape> shape;
+  std::unique_ptr<btRigidBody> body;
+};
+
+enum class Scene { kThrown, kOnEdge };
+
 struct Outcome {
   std::size_t unanswered{0};
-  double queries{0}, milliseconds{0};  // a step
+  double queries{0}, milliseconds{0}, milliseconds_of_contacts{0};  // a step
   double lowest{0};
 };
 
-Outcome simulate(bool is_continuous, int frequency, int steps, int resolution) {
+/// A cloth 2 wide and 1 above the sheet.
+btSoftBody* makeCloth(btSoftRigidDynamicsWorld& world, Scene scene, int resolution) {
+  const bool is_flat = scene == Scene::kThrown;
+  const btVector3 far = is_flat ? btVector3(0, 2, 0) : btVector3(0, 0, 2),
+                  corner(-1, is_flat ? -1.f : .9f, is_flat ? 1.f : .2f), wide(2, 0, 0);
+  btSoftBody* cloth = btSoftBodyHelpers::CreatePatch(
+      world.getWorldInfo(), corner, corner + wide, corner + far, corner + wide + far,
+      resolution, resolution, 0, true);
+  cloth->getCollisionShape()->setMargin(.01f);
+  cloth->setTotalMass(1);
+  cloth->m_cfg.piterations = 4;
+  // A little uneven, or all of it would meet the sheet at one time, and fold nowhere.
+  for (int i = 0; i < cloth->m_nodes.size(); ++i) {
+    btVector3& x = cloth->m_nodes[i].m_x;
+    x += .05f * std::sin(3 * x.x() + 2 * (is_flat ? x.y() : x.z())) *
+         (is_flat ? btVector3(0, 0, 1) : btVector3(0, 1, 0));
+  }
+  cloth->setVelocity({0, 0, -6});
+  world.addSoftBody(cloth);
+  return cloth;
+}
+
+Outcome simulate(bool is_continuous, Scene scene, int frequency, int steps,
+                 int resolution, const std::string& path) {
   btSoftBodyRigidBodyCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher(&configuration);
   btDbvtBroadphase broadphase;
@@ -77,38 +143,16 @@ Outcome simulate(bool is_continuous, int frequency, int steps, int resolution) {
   world.setGravity({0, 0, -10});
   world.getWorldInfo().m_gravity = {0, 0, -10};
   world.getWorldInfo().m_sparsesdf.Initialize();
-
-  const Mesh floor = sheet();
-  btTriangleMesh triangles;
-  for (const fcl::Triangle& t : floor.triangles) {
-    btVector3 p[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const fcl::Vector3d& x = floor.vertices[t[k]];
-      p[k] = {float(x.x()), float(x.y()), float(x.z())};
-    }
-    triangles.addTriangle(p[0], p[1], p[2]);
-  }
-  btBvhTriangleMeshShape shape(&triangles, true);
-  btRigidBody ground(0, nullptr, &shape);
-  world.addRigidBody(&ground);
-
-  btSoftBody* cloth = btSoftBodyHelpers::CreatePatch(world.getWorldInfo(), {-1, -1, 1},
-                                                     {1, -1, 1}, {-1, 1, 1}, {1, 1, 1},
-                                                     resolution, resolution, 0, true);
-  cloth->getCollisionShape()->setMargin(.01f);
-  cloth->setTotalMass(1);
-  cloth->m_cfg.piterations = 4;
-  // A little uneven, or all of it would meet the sheet at one time.
-  for (int i = 0; i < cloth->m_nodes.size(); ++i)
-    cloth->m_nodes[i].m_x.setZ(1 + .05f * std::sin(3 * cloth->m_nodes[i].m_x.x() +
-                                                   2 * cloth->m_nodes[i].m_x.y()));
-  cloth->setVelocity({0, 0, -6});
-  world.addSoftBody(cloth);
+  MeshBody floor(world, sheet()), turning(world, block());
+  btSoftBody* cloth = makeCloth(world, scene, resolution);
 
   ContinuousCloth continuous(*cloth, 5e-3);
-  continuous.addObstacle(floor.vertices, floor.triangles);
-  continuous.addObstacle(block(0).vertices, block(0).triangles);
+  for (const MeshBody* body : {&floor, &turning})
+    continuous.addObstacle(body->mesh.vertices, body->mesh.triangles);
   fcl::DeformableBVHModel<> all;  // of cloth and obstacles, to count
+  all.beginModel();
+  all.addSubModel(continuous.positions(), continuous.triangles());
+  all.endModel(fcl::FclTree::kSkip);
   Positions before = continuous.positions();
   Outcome outcome;
   const auto secondsNow = [] {
@@ -116,49 +160,39 @@ Outcome simulate(bool is_continuous, int frequency, int steps, int resolution) {
                std::chrono::steady_clock::now().time_since_epoch())
         .count();
   };
+  const float time = 1.f / static_cast<float>(frequency);
   for (int step = 0; step < steps; ++step) {
-    const float time = 1.f / static_cast<float>(frequency);
-    Positions obstacles = floor.vertices;
-    const Positions turned = block(double(time) * (step + 1)).vertices;
-    obstacles.insert(obstacles.end(), turned.begin(), turned.end());
+    Positions obstacles;
+    floor.moveTo(btTransform::getIdentity(), obstacles);
+    turning.moveTo(poseOfBlock(double(time) * (step + 1)), obstacles);
     const double begin = secondsNow();
     if (is_continuous) {
       const contact_response::Report report = continuous.step(world, time, obstacles);
       outcome.queries += double(report.queries) / steps;
+      outcome.milliseconds_of_contacts += 1e3 * continuous.secondsOfContacts() / steps;
     } else {
       world.stepSimulation(time, 0);
     }
     outcome.milliseconds += 1e3 * (secondsNow() - begin) / steps;
 
-    Positions now = before;
+    Positions now;
     for (int i = 0; i < cloth->m_nodes.size(); ++i) {
       const btVector3& x = cloth->m_nodes[i].m_x;
-      now[std::size_t(i)] = {double(x.x()), double(x.y()), double(x.z())};
+      now.emplace_back(x.x(), x.y(), x.z());
     }
-    const std::size_t nodes = std::size_t(cloth->m_nodes.size());
-    for (std::size_t i = 0; i < obstacles.size(); ++i)
-      now[nodes + i] = is_continuous ? continuous.positions()[nodes + i] : obstacles[i];
-    if (step == 0) {
-      std::vector<fcl::Triangle> faces;
-      for (int i = 0; i < cloth->m_faces.size(); ++i)
-        faces.emplace_back(std::size_t(cloth->m_faces[i].m_n[0] - &cloth->m_nodes[0]),
-                           std::size_t(cloth->m_faces[i].m_n[1] - &cloth->m_nodes[0]),
-                           std::size_t(cloth->m_faces[i].m_n[2] - &cloth->m_nodes[0]));
-      std::size_t first = nodes;
-      for (const Mesh& mesh : {floor, block(0)}) {
-        for (const fcl::Triangle& t : mesh.triangles)
-          faces.emplace_back(first + t[0], first + t[1], first + t[2]);
-        first += mesh.vertices.size();
-      }
-      all.beginModel();
-      all.addSubModel(before, faces);
-      all.endModel(fcl::FclTree::kSkip);
-    }
+    now.insert(now.end(), obstacles.begin(), obstacles.end());
+    // An obstacle may have stopped.
+    if (is_continuous) now = continuous.positions();
     all.updateFrames(before[0].data(), now[0].data(), now.size());
     fcl::ContinuousContactResultd found;
     fcl::continuousSelfCollide(&all, fcl::ContinuousContactRequestd(), found);
     outcome.unanswered += found.contacts.size() + (found.initially_crossing ? 1 : 0);
     before = now;
+  }
+  if (!path.empty()) {
+    ObjFile file;
+    file.addMesh(before, continuous.triangles());
+    file.write(path);
   }
   // Above or below the sheet, which is 4 wide.
   outcome.lowest = 1;
@@ -169,7 +203,6 @@ Outcome simulate(bool is_continuous, int frequency, int steps, int resolution) {
   }
   world.removeSoftBody(cloth);
   delete cloth;
-  world.removeRigidBody(&ground);
   return outcome;
 }
 
@@ -178,18 +211,31 @@ Outcome simulate(bool is_continuous, int frequency, int steps, int resolution) {
 int main(int argc, char** argv) {
   const int steps = argc > 1 ? std::atoi(argv[1]) : 60;
   const int resolution = argc > 2 ? std::atoi(argv[2]) : 21;
+  const std::string folder = argc > 3 ? argv[3] : "";
   bool is_right = true;
-  for (const int frequency : {60, 240}) {
-    const Outcome without = simulate(false, frequency, steps, resolution),
-                  with = simulate(true, frequency, steps, resolution);
-    std::printf(
-        "%3d Hz, %d steps, contacts that are not answered: Bullet %zu, lowest point at "
-        "%.3f; with the continuous step %zu, at %.3f\n",
-        frequency, steps, without.unanswered, without.lowest, with.unanswered,
-        with.lowest);
-    std::printf("  %.1f queries, %.2f ms a step, %.2f without\n", with.queries,
-                with.milliseconds, without.milliseconds);
-    is_right &= without.unanswered > 0 && with.unanswered == 0 && with.lowest > 0;
-  }
+  for (const Scene scene : {Scene::kThrown, Scene::kOnEdge})
+    for (const int frequency : {60, 240}) {
+      const std::string name = scene == Scene::kThrown ? "thrown" : "on its edge";
+      const auto run = [&](bool is_continuous) {
+        const std::string path =
+            folder.empty()
+                ? ""
+                : folder + (scene == Scene::kThrown ? "/thrown_" : "/on_edge_") +
+                      std::to_string(frequency) +
+                      (is_continuous ? "_with.obj" : "_without.obj");
+        return simulate(is_continuous, scene, frequency, steps, resolution, path);
+      };
+      const Outcome without = run(false), with = run(true);
+      std::printf(
+          "%s, %d Hz, %d steps, contacts that are not answered: Bullet %zu, lowest point "
+          "at %.3f; with the continuous step %zu, at %.3f\n",
+          name.c_str(), frequency, steps, without.unanswered, without.lowest,
+          with.unanswered, with.lowest);
+      std::printf(
+          "  %.1f queries, %.2f ms a step, %.2f of them for contacts, %.2f ms without\n",
+          with.queries, with.milliseconds, with.milliseconds_of_contacts,
+          without.milliseconds);
+      is_right &= without.unanswered > 0 && with.unanswered == 0 && with.lowest > 0;
+    }
   return is_right ? 0 : 1;
 }

@@ -3,6 +3,7 @@
 // Plates of 1 mm that are thrown at a plate of 1 mm, in steps of 1 ms: with
 // dart::simulation::World::step(), and with the continuous step around it. Then chains of
 // three such plates.
+//   example_thrown_plates [THROWS] [FOLDER FOR WHERE THEY ARE IN THE END]
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -11,6 +12,7 @@
 #include <string>
 
 #include "continuous_step.h"
+#include "obj_file.h"
 
 namespace {
 
@@ -62,12 +64,15 @@ struct Outcome {
   double milliseconds{0};  // a step
 };
 
-Outcome throwPlates(double speed, int links, int throws, bool is_continuous) {
+Outcome throwPlates(double speed, int links, int throws, bool is_continuous,
+                    const std::string& folder) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(-1, 1);
   Outcome outcome;
   int steps = 0;
   double seconds = 0;
+  ObjFile last;
+  last.addPlate(1, 1, Eigen::Isometry3d::Identity());
   for (int i = 0; i < throws; ++i) {
     const auto world = simulation::World::create();
     world->setTimeStep(1e-3);
@@ -97,11 +102,17 @@ Outcome throwPlates(double speed, int links, int throws, bool is_continuous) {
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     steps += count;
     bool has_passed = false;
-    for (const dynamics::BodyNode* body : plate->getBodyNodes())
+    for (const dynamics::BodyNode* body : plate->getBodyNodes()) {
       has_passed |= !(body->getCOM().z() >= 0);
+      last.addPlate(.1, .1, body->getWorldTransform());
+    }
     outcome.passed += has_passed;
   }
   outcome.milliseconds = 1e3 * seconds / steps;
+  if (!folder.empty())
+    last.write(folder + "/plates_" + std::to_string(links) + "_" +
+               std::to_string(static_cast<int>(speed)) +
+               (is_continuous ? "_with.obj" : "_without.obj"));
   return outcome;
 }
 
@@ -109,11 +120,12 @@ Outcome throwPlates(double speed, int links, int throws, bool is_continuous) {
 
 int main(int argc, char** argv) {
   const int throws = argc > 1 ? std::atoi(argv[1]) : 10;
+  const std::string folder = argc > 2 ? argv[2] : "";
   int passed = 0, passed_before = 0;
   for (const int links : {1, 3})
     for (const double speed : {2., 5., 10.}) {
-      const Outcome without = throwPlates(speed, links, throws, false),
-                    with = throwPlates(speed, links, throws, true);
+      const Outcome without = throwPlates(speed, links, throws, false, folder),
+                    with = throwPlates(speed, links, throws, true, folder);
       std::printf(
           "%d plates, %2.0f m/s: %d of %d pass through; with the continuous step %d; "
           "%.3f and %.3f ms a step\n",

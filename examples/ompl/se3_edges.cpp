@@ -4,6 +4,7 @@
 // windows, with OMPL's own validator, which asks FCL about states on the way, and with
 // the continuous one. Both are compared with dense samples. Then a planner finds a way
 // through the windows.
+//   example_se3_edges [FILE.obj FOR THAT WAY]
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -22,6 +23,7 @@
 #include <ompl/util/RandomNumbers.h>
 
 #include "continuous_motion_validator.h"
+#include "obj_file.h"
 
 namespace {
 
@@ -68,7 +70,7 @@ struct Counts {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
   ompl::msg::setLogLevel(ompl::msg::LOG_WARN);
   ompl::RNG::setSeed(1);
   const std::shared_ptr<Mesh> robot = plate(), environment = walls();
@@ -158,6 +160,21 @@ int main() {
   std::printf("a way of %zu states: %s\n",
               is_found ? setup.getSolutionPath().getStateCount() : 0,
               is_found ? "found, and proved to be free" : "not found");
+  if (is_found && argc > 1) {
+    ObjFile file;
+    const auto add = [&](const Mesh& mesh, const fcl::Transform3d& pose) {
+      file.addMesh(
+          std::vector<fcl::Vector3d>(mesh.vertices, mesh.vertices + mesh.num_vertices),
+          std::vector<fcl::Triangle>(mesh.tri_indices, mesh.tri_indices + mesh.num_tris),
+          pose);
+    };
+    add(*environment, fcl::Transform3d::Identity());
+    ompl::geometric::PathGeometric way = setup.getSolutionPath();
+    way.interpolate(60);
+    for (const ob::State* state : way.getStates())
+      add(*robot, ContinuousMotionValidator::poseOf(state));
+    file.write(argv[1]);
+  }
   return without.missed > 0 && with.missed == 0 && false_contacts == 0 && is_found ? 0
                                                                                    : 1;
 }
