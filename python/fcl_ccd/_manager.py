@@ -34,6 +34,8 @@ from ._results import Result, result_of
 if TYPE_CHECKING:
     from typing import Iterable, Iterator
 
+    from numpy.typing import ArrayLike
+
     from ._arguments import TriangleMesh
     from ._core import Geometry
     from ._surfaces import Queried
@@ -159,6 +161,7 @@ class CollisionManager(_arguments.Built):
         *,
         filter: Optional[Filter] = None,
         self_collision: bool = False,
+        thickness: float = 0.0,
     ) -> None:
         """Add an object.
 
@@ -168,6 +171,7 @@ class CollisionManager(_arguments.Built):
             rigid meshes and shapes: give a LinearMotion for a mesh that deforms.
         filter : Filter, which other objects it can be in contact with
         self_collision : bool, whether collide() looks for contacts of the mesh with itself
+        thickness : float, see set_thickness()
 
         Raises ValueError if the name is registered, and for what collide() refuses. After an
         error the manager is unchanged.
@@ -182,6 +186,7 @@ class CollisionManager(_arguments.Built):
             path_of(motion, "motion"),
             filter_of(filter, "filter"),
             _arguments.flag(self_collision, "self_collision"),
+            _arguments.number(thickness, "thickness"),
         )
 
     def unregister(self, name: Hashable) -> None:
@@ -213,6 +218,44 @@ class CollisionManager(_arguments.Built):
         names = _arguments.iterable(objects, "objects", wanted)
         given = dict.fromkeys(self._object(name) for name in names)  # each once
         self._manager._update(list(given), motions)
+
+    def step(self, poses: Mapping[Hashable, ArrayLike]) -> None:
+        """Give the next step by poses: each object goes there from where its motion ends.
+
+        poses : dict of names and poses, such as {"tool": pose_t2}. As motion=(last, next) of
+            update(): the origin goes straight, and the rotation turns at a constant rate.
+
+        After an error the manager is unchanged.
+        """
+        if not isinstance(poses, Mapping):
+            raise _arguments.wrong_type("poses", poses, "a dict of names and poses")
+        motions = {}
+        for name, pose in poses.items():
+            last = self._object(name)._last_pose()
+            motions[name] = (last, _arguments.pose(pose, f"the pose of {name!r}"))
+        self.update(motions)
+
+    def set_thickness(self, name: Hashable, thickness: float) -> None:
+        """Set the thickness of an object, at least 0, in the unit of the coordinates.
+
+        Two objects are in contact when they come within the sum of both thicknesses, in addition
+        to collide()'s min_distance; an object with itself within twice its own. distance() is
+        that of the geometries.
+        """
+        self._manager._set_thickness(
+            self._object(name), _arguments.number(thickness, "thickness")
+        )
+
+    def set_pair_distance(
+        self, name1: Hashable, name2: Hashable, distance: Optional[float]
+    ) -> None:
+        """Set the distance of two objects in place of the sum of their thicknesses.
+
+        None: that of their thicknesses again. It acts between objects of this manager.
+        """
+        if distance is not None:
+            distance = _arguments.number(distance, "distance")
+        self._manager._set_pair_distance(self._object(name1), self._object(name2), distance)
 
     def set_filter(self, name: Hashable, filter: Optional[Filter]) -> None:
         """Replace the filter of an object: which others it can be in contact with. None: all."""

@@ -51,7 +51,10 @@ py::dict fieldsOf(const FclDistance& nearest) {
 }
 
 void bindManager(py::module_& module) {
-  Class<ManagedObject>(module, "ManagedObject", seenByCollector<ManagedObject>());
+  Class<ManagedObject>(module, "ManagedObject", seenByCollector<ManagedObject>())
+      .def("_last_pose", [](const ManagedObject& object) {
+        return toArray(fcl::detail::toNumbers<double>(object.lastPose()));
+      });
   Class<Manager>(module, "Manager", seenByCollector<Manager>())
       .def(py::init<>())
       .def("_insert", &Manager::insert)
@@ -59,6 +62,8 @@ void bindManager(py::module_& module) {
       .def("_update", &Manager::update)
       .def("_set_filter", &Manager::setFilter)
       .def("_set_self_collision", &Manager::setSelfCollision)
+      .def("_set_thickness", &Manager::setThickness)
+      .def("_set_pair_distance", &Manager::setPairDistance)
       .def("_ask_all", &Manager::askAll<Request>)
       .def("_ask_all", &Manager::askAll<DistanceRequest>)
       .def("_ask_one", &Manager::askOne<Request>)

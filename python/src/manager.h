@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
@@ -71,6 +72,9 @@ class ManagedObject : public fcl::ContinuousCollisionObjectd {
     path_.visit(visit);
   }
 
+  /// Where its motion ends.
+  fcl::Transform3d lastPose() const { return fcl::detail::lastPoseOf<double>(*this); }
+
   /// The manager has read the mesh.
   void takeNote() { num_updates_ = geometry_.numUpdates(); }
   bool isOutOfDate() const { return num_updates_ != geometry_.numUpdates(); }
@@ -103,7 +107,8 @@ class Manager : public Guarded {
   Manager() : Guarded("manager") {}
 
   py::object insert(py::object name, py::object geometry, const Motion& motion,
-                    const fcl::ContinuousFilter& filter, bool self_collision) {
+                    const fcl::ContinuousFilter& filter, bool self_collision,
+                    double thickness) {
     const Writing writing(*this);
     py::object owner = py::cast(
         std::make_unique<ManagedObject>(std::move(name), std::move(geometry), motion));
@@ -112,7 +117,7 @@ class Manager : public Guarded {
     const auto place = owners_.emplace(&object, owner).first;
     try {
       const py::gil_scoped_release release;
-      add(object, filter, self_collision);
+      add(object, filter, self_collision, thickness);
     } catch (...) {
       owners_.erase(place);
       throw;
@@ -165,6 +170,21 @@ class Manager : public Guarded {
   void setFilter(ManagedObject& object, const fcl::ContinuousFilter& filter) {
     const Writing writing(*this);
     manager_.setFilter(&object, filter);
+  }
+
+  void setThickness(ManagedObject& object, double thickness) {
+    const Writing writing(*this);
+    manager_.setThickness(&object, thickness);
+  }
+
+  /// @param distance  none: that of the two thicknesses
+  void setPairDistance(ManagedObject& o1, ManagedObject& o2,
+                       std::optional<double> distance) {
+    const Writing writing(*this);
+    if (distance)
+      manager_.setPairDistance(&o1, &o2, *distance);
+    else
+      manager_.resetPairDistance(&o1, &o2);
   }
 
   void setSelfCollision(ManagedObject& object, bool enabled) {
@@ -231,11 +251,12 @@ class Manager : public Guarded {
  private:
   /// Called without the GIL. After an exception the object is not registered.
   void add(ManagedObject& object, const fcl::ContinuousFilter& filter,
-           bool self_collision) {
+           bool self_collision, double thickness) {
     manager_.registerObject(&object);
     try {
       manager_.setFilter(&object, filter);
       manager_.setSelfCollision(&object, self_collision);
+      if (thickness != 0) manager_.setThickness(&object, thickness);
     } catch (...) {
       manager_.unregisterObject(&object);
       throw;

@@ -205,6 +205,14 @@ def test_wrong_calls_change_nothing():
         (lambda: manager.update({"ball": place, "cloth": turn}), ValueError, "Linear"),
         (lambda: manager.update({"ball": place, "box": far}), ValueError, "not finite"),
         (lambda: manager.set_self_collision("box", True), ValueError, "not a triangle mesh"),
+        (lambda: manager.set_thickness("box", -1), ValueError, "thickness is negative"),
+        (lambda: manager.set_thickness("x", 1), ValueError, "'x' is not registered"),
+        (lambda: manager.set_thickness("box", "1"), TypeError, "thickness"),
+        (lambda: manager.set_pair_distance("box", "ball", np.inf), ValueError, "a finite number"),
+        (lambda: manager.register("x", BALL, place, thickness=-1), ValueError, "thickness is negative"),
+        (lambda: manager.step({"box": np.eye(3)}), ValueError, "pose of 'box' has the shape"),
+        (lambda: manager.step({"x": np.eye(4)}), ValueError, "'x' is not registered"),
+        (lambda: manager.step(["box"]), TypeError, "poses is of type list"),
         (lambda: manager.set_filter("ball", 3), TypeError, "filter is of type int"),
         (lambda: manager.collide(BALL, name="ball"), ValueError, "name and other are given"),
         (lambda: manager.collide(motion=DOWN), ValueError, "motion is for a mesh"),
@@ -218,6 +226,35 @@ def test_wrong_calls_change_nothing():
         assert list(manager) == ["ball", "box", "cloth"]
         assert [(p.o1, p.o2) for p in after.pairs] == [(p.o1, p.o2) for p in before.pairs]
         assert after.time_of_contact == before.time_of_contact
+
+
+def test_objects_step_from_where_they_are():
+    manager = fcl_ccd.CollisionManager()
+    manager.register("ball", fcl_ccd.Sphere(1), pose((4, 0, 0)))
+    manager.register("box", fcl_ccd.Box(2, 2, 2))
+    assert not manager.collide()
+    manager.step({"ball": pose((0, 0, 0))})
+    assert manager.collide().time_of_contact == pytest.approx(0.5, abs=1e-4)
+    manager.step({"ball": pose((0, 4, 0)), "box": pose((0, 0, 0))})
+    assert manager.collide().time_of_contact == 0
+    manager.step({"ball": pose((4, 4, 0))})
+    assert not manager.collide()
+
+
+def test_thickness_is_added_to_the_distance():
+    manager = fcl_ccd.CollisionManager()
+    manager.register("ball", fcl_ccd.Sphere(1), pose((3, 0, 0)), thickness=0.6)
+    manager.register("other", fcl_ccd.Sphere(1))
+    assert not manager.collide()
+    manager.set_thickness("other", 0.5)
+    assert manager.collide() and manager.collide(min_distance=1)
+    assert manager.distance().result.distance_lo == pytest.approx(1, rel=1e-2)
+    manager.set_pair_distance("other", "ball", 0.9)
+    assert not manager.collide() and manager.collide(min_distance=0.2)
+    manager.set_pair_distance("ball", "other", None)
+    assert manager.collide()
+    manager.set_thickness("ball", 0)
+    assert not manager.collide()
 
 
 def test_changes_during_a_query_are_refused():

@@ -152,6 +152,12 @@ void ContinuousBroadPhase<S>::setSelf(const void* object, bool self) {
 }
 
 template <typename S>
+void ContinuousBroadPhase<S>::setMargin(const void* object, double margin) {
+  requireRegistered(*boxes_, object);
+  boxes_->setMargin(object, margin);
+}
+
+template <typename S>
 std::size_t ContinuousBroadPhase<S>::size() const {
   return boxes_->size();
 }

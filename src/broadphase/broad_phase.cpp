@@ -35,21 +35,18 @@ bool isSameAtAllTimes(const MovingBounds& bounds) {
   return true;
 }
 
-/// The objects of a tree that an object may meet.
-template <typename Visit>
-void visitMeeting(const MovingBoxTree& tree, const LinearBox& box, const MovingFlat* flat,
-                  const LinearQuery& query, Visit&& visit) {
-  if (flat)
-    tree.visitMeeting(*flat, query, visit);
-  else
-    tree.visitMeeting(box, query, visit);
-}
-
-LinearQuery linearQuery(const MeetingQuery& query) {
-  return LinearQuery(query.distance, query.latest);
-}
-
 }  // namespace
+
+/// The distance from which a pair counts, with the sum of its margins. The caller adds
+/// the same numbers in another order, or rounds them to float.
+double BroadPhase::distanceOf(const MeetingQuery& query, double margin) {
+  assert(margin >= 0);
+  return margin > 0 ? (query.distance + margin) * (1 + 0x1p-20) : query.distance;
+}
+
+LinearQuery BroadPhase::linearQuery(const MeetingQuery& query, double margin) {
+  return LinearQuery(distanceOf(query, margin), query.latest);
+}
 
 std::vector<void*> BroadPhase::objects() const {
   std::vector<std::pair<std::uint64_t, void*>> in_order;
@@ -81,6 +78,7 @@ BroadPhase::SlotNumber BroadPhase::newSlot(void* object) {
   at(i).serial = next_serial_++;
   at(i).filter = ObjectFilter();
   at(i).self = false;
+  at(i).margin = 0;
   return i;
 }
 
@@ -99,7 +97,16 @@ void BroadPhase::setBounds(const MovingBounds& bounds, Slot& slot) {
   slot.boxes.assign(bounds.boxes, bounds.boxes + bounds.num_spans + 1);
   slot.flat = bounds.flat ? std::make_unique<MovingFlat>(*bounds.flat) : nullptr;
   slot.rests = isSameAtAllTimes(bounds) && (!bounds.flat || bounds.flat->rests());
-  slot.box = linearBox(bounds);
+  setBox(slot);
+}
+
+/// The box for a tree, and whether there is one.
+void BroadPhase::setBox(Slot& slot) {
+  slot.box = linearBox(slot.bounds());
+  if (slot.margin > 0)
+    for (auto& axis : slot.box.axis)
+      for (float& side : axis)
+        side = roundUp(static_cast<double>(side) + slot.margin * (1 + 0x1p-20), 0);
   slot.mobility = !isBounded(slot.box) ? kUnbounded : slot.rests ? kResting : kMoving;
 }
 
@@ -233,6 +240,24 @@ void BroadPhase::setFilter(const void* object, const ObjectFilter& filter) {
   if (at(i).rests) markStale(i);
 }
 
+void BroadPhase::setMargin(const void* object, double margin) {
+  assert(margin >= 0 && std::isfinite(margin));
+  const SlotNumber number = numberOf(object);
+  Slot& slot = at(number);
+  if (slot.margin == margin) return;
+  const Mobility before = slot.mobility;
+  if (before != kUnbounded) tree_[before].remove(number);
+  slot.margin = margin;
+  setBox(slot);
+  if (slot.rests) markStale(number);
+  if (slot.mobility != before) {
+    leave(number, before);
+    join(number);
+  }
+  if (slot.mobility != kUnbounded) tree_[slot.mobility].insert({&slot.box, number});
+  assert(isConsistent());
+}
+
 void BroadPhase::setSelf(const void* object, bool self) {
   at(numberOf(object)).self = self;
 }
@@ -240,6 +265,11 @@ void BroadPhase::setSelf(const void* object, bool self) {
 ObjectFilter BroadPhase::filterOf(const void* object) const {
   const auto entry = slot_of_.find(object);
   return entry == slot_of_.end() ? ObjectFilter() : at(entry->second).filter;
+}
+
+double BroadPhase::marginOf(const void* object) const {
+  const auto entry = slot_of_.find(object);
+  return entry == slot_of_.end() ? 0 : at(entry->second).margin;
 }
 
 /// Adds those pairs whose boxes meet and whose filters accept each other.
@@ -259,7 +289,8 @@ void BroadPhase::addMeeting(const BroadPhase& one, const BroadPhase& two,
     prefetchMemory(two.at(boxes.second).boxes.data());
     const Slot &a = one.at(near[i].first), &b = two.at(near[i].second);
     if (a.object == b.object || !a.filter.accepts(b.filter)) continue;
-    const MeetingWindow window = meetingWindow(a.bounds(), b.bounds(), query.distance);
+    const MeetingWindow window =
+        meetingWindow(a.bounds(), b.bounds(), distanceOf(query, a.margin + b.margin));
     if (window.isEmpty() || window.lo > query.latest) continue;
     assert(&one != &two || a.serial != b.serial);
     if (&one == &two && b.serial < a.serial)
@@ -269,34 +300,43 @@ void BroadPhase::addMeeting(const BroadPhase& one, const BroadPhase& two,
   }
 }
 
+/// The objects of a tree that an object may meet. The boxes have their margins.
+template <typename Visit>
+void BroadPhase::visitMeeting(const MovingBoxTree& tree, const Slot& slot,
+                              const MeetingQuery& query, Visit&& visit) {
+  if (slot.flat)
+    tree.visitMeeting(*slot.flat, linearQuery(query, slot.margin), visit);
+  else
+    tree.visitMeeting(slot.box, linearQuery(query), visit);
+}
+
 /// The pairs of which at least one object moves.
-void BroadPhase::findMoving(const LinearQuery& query, std::vector<SlotPair>& near) const {
+void BroadPhase::findMoving(const MeetingQuery& query,
+                            std::vector<SlotPair>& near) const {
   const auto add = [&](SlotNumber a, SlotNumber b) { near.emplace_back(a, b); };
-  tree_[kMoving].visitPairs(query, add);
-  tree_[kMoving].visitPairs(tree_[kResting], query, add);
+  tree_[kMoving].visitPairs(linearQuery(query), add);
+  tree_[kMoving].visitPairs(tree_[kResting], linearQuery(query), add);
   const std::vector<SlotNumber>& unbounded = members_[kUnbounded];
   for (std::size_t i = 0; i < unbounded.size(); ++i) {
     const SlotNumber a = unbounded[i];
     const auto add_to = [&](SlotNumber b) { add(a, b); };
-    visitMeeting(tree_[kMoving], at(a).box, at(a).flat.get(), query, add_to);
-    if (!at(a).rests)
-      visitMeeting(tree_[kResting], at(a).box, at(a).flat.get(), query, add_to);
+    visitMeeting(tree_[kMoving], at(a), query, add_to);
+    if (!at(a).rests) visitMeeting(tree_[kResting], at(a), query, add_to);
     for (std::size_t k = 0; k < i; ++k)
       if (!at(a).rests || !at(unbounded[k]).rests) add(a, unbounded[k]);
   }
 }
 
 /// The pairs of two objects that rest.
-void BroadPhase::findResting(const LinearQuery& query,
+void BroadPhase::findResting(const MeetingQuery& query,
                              std::vector<SlotPair>& near) const {
   const auto add = [&](SlotNumber a, SlotNumber b) { near.emplace_back(a, b); };
-  tree_[kResting].visitPairs(query, add);
+  tree_[kResting].visitPairs(linearQuery(query), add);
   const std::vector<SlotNumber>& unbounded = members_[kUnbounded];
   for (std::size_t i = 0; i < unbounded.size(); ++i) {
     const SlotNumber a = unbounded[i];
     if (!at(a).rests) continue;
-    visitMeeting(tree_[kResting], at(a).box, at(a).flat.get(), query,
-                 [&](SlotNumber b) { add(a, b); });
+    visitMeeting(tree_[kResting], at(a), query, [&](SlotNumber b) { add(a, b); });
     for (std::size_t k = 0; k < i; ++k)
       if (at(unbounded[k]).rests) add(a, unbounded[k]);
   }
@@ -309,7 +349,7 @@ void BroadPhase::findRestingOf(SlotNumber i, std::vector<SlotPair>& near) const 
     if (k != i && !(is_stale_[static_cast<std::size_t>(k)] && k < i))
       near.emplace_back(i, k);
   };
-  visitMeeting(tree_[kResting], at(i).box, at(i).flat.get(), LinearQuery(0, 1), add_to);
+  visitMeeting(tree_[kResting], at(i), MeetingQuery(), add_to);
   for (const SlotNumber k : members_[kUnbounded])
     if (at(k).rests) add_to(k);
 }
@@ -392,14 +432,14 @@ std::vector<MeetingObjects> BroadPhase::sorted(std::vector<Found>& found,
 std::vector<MeetingObjects> BroadPhase::pairs(const MeetingQuery& query) const {
   std::vector<SlotPair> near;
   std::vector<Found> found;
-  findMoving(linearQuery(query), near);
+  findMoving(query, near);
   if (query.distance == 0) {
     // What is remembered is for the distance 0.
     const std::lock_guard<std::mutex> lock(resting_mutex_);
     refreshResting();
     found = resting_;
   } else {
-    findResting(linearQuery(query), near);
+    findResting(query, near);
   }
   addMeeting(*this, *this, near, query, found);
   if (query.with_self)
@@ -420,18 +460,24 @@ void BroadPhase::visitMet(const MovingBounds& bounds, const ObjectFilter& filter
   const auto test = [&](SlotNumber i) {
     const Slot& slot = at(i);
     if (!filter.accepts(slot.filter)) return;
-    const MeetingWindow window = meetingWindow(bounds, slot.bounds(), query.distance);
+    const MeetingWindow window =
+        meetingWindow(bounds, slot.bounds(), distanceOf(query, slot.margin));
     if (!window.isEmpty() && window.lo <= query.latest) visit(i, slot, window);
   };
   for (const MovingBoxTree& tree : tree_)
-    visitMeeting(tree, box, bounds.flat, linear, test);
+    if (bounds.flat)
+      tree.visitMeeting(*bounds.flat, linear, test);
+    else
+      tree.visitMeeting(box, linear, test);
   for (const SlotNumber i : members_[kUnbounded]) test(i);
 }
 
 std::vector<MeetingObjects> BroadPhase::pairsOf(void* object, const MovingBounds& bounds,
                                                 const MeetingQuery& query) const {
   std::vector<Found> found;
-  visitMet(bounds, filterOf(object), query,
+  MeetingQuery with_margin = query;
+  with_margin.distance = distanceOf(query, marginOf(object));
+  visitMet(bounds, filterOf(object), with_margin,
            [&](SlotNumber i, const Slot& slot, const MeetingWindow& window) {
              if (slot.object != object)
                found.push_back({window, slot.serial, slot.serial, i, i});
@@ -458,14 +504,12 @@ std::vector<MeetingObjects> BroadPhase::pairsWith(const BroadPhase& other,
     for (const MovingBoxTree& two : other.tree_) one.visitPairs(two, linear, add);
   for (const SlotNumber a : members_[kUnbounded]) {
     const auto add_to = [&](SlotNumber b) { add(a, b); };
-    for (const MovingBoxTree& two : other.tree_)
-      visitMeeting(two, at(a).box, at(a).flat.get(), linear, add_to);
+    for (const MovingBoxTree& two : other.tree_) visitMeeting(two, at(a), query, add_to);
     for (const SlotNumber b : other.members_[kUnbounded]) add(a, b);
   }
   for (const SlotNumber b : other.members_[kUnbounded])
     for (const MovingBoxTree& one : tree_)
-      visitMeeting(one, other.at(b).box, other.at(b).flat.get(), linear,
-                   [&](SlotNumber a) { add(a, b); });
+      visitMeeting(one, other.at(b), query, [&](SlotNumber a) { add(a, b); });
   std::vector<Found> found;
   addMeeting(*this, other, near, query, found);
   return sorted(found, other);

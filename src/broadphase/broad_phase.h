@@ -125,12 +125,18 @@ class BroadPhase {
   void remove(const void* object);
   void setFilter(const void* object, const ObjectFilter& filter);
   void setSelf(const void* object, bool self);
+  /// @brief A pair counts from the distance of a query plus the margins of both objects.
+  /// 0 at first.
+  /// @pre the margin is finite and not negative
+  void setMargin(const void* object, double margin);
   void clear();
   /// @brief New trees.
   void rebuild();
 
   /// @brief The filter of an object; of one that is not there, the default.
   ObjectFilter filterOf(const void* object) const;
+  /// @brief The margin of an object; of one that is not there, 0.
+  double marginOf(const void* object) const;
 
   /// @brief Sorted by the start of the window, then by the order of insertion. Of a pair,
   /// o1 was inserted first.
@@ -171,6 +177,8 @@ class BroadPhase {
     Mobility mobility{kUnbounded};
     /// In members_[mobility].
     std::size_t member{0};
+    double margin{0};
+    /// Of the bounds, with the margin around it.
     LinearBox box;
     std::vector<HalfAxisBox> boxes;
     /// Null as a rule.
@@ -190,6 +198,8 @@ class BroadPhase {
   template <typename Visit>
   void visitMet(const MovingBounds& bounds, const ObjectFilter& filter,
                 const MeetingQuery& query, Visit&& visit) const;
+  static double distanceOf(const MeetingQuery& query, double margin);
+  static LinearQuery linearQuery(const MeetingQuery& query, double margin = 0);
   Slot& at(SlotNumber i) {
     assert(i >= 0 && static_cast<std::size_t>(i) < slots_.size());
     return slots_[static_cast<std::size_t>(i)];
@@ -202,6 +212,7 @@ class BroadPhase {
   SlotNumber numberOf(const void* object) const { return slot_of_.at(object); }
   SlotNumber newSlot(void* object);
   void setBounds(const MovingBounds& bounds, Slot& slot);
+  static void setBox(Slot& slot);
   void join(SlotNumber i);
   void leave(SlotNumber i, Mobility mobility);
   void change(const std::vector<SlotNumber>& slots, const BoundsList& bounds,
@@ -212,8 +223,11 @@ class BroadPhase {
   static void addMeeting(const BroadPhase& one, const BroadPhase& two,
                          const std::vector<SlotPair>& near, const MeetingQuery& query,
                          std::vector<Found>& found);
-  void findMoving(const LinearQuery& query, std::vector<SlotPair>& near) const;
-  void findResting(const LinearQuery& query, std::vector<SlotPair>& near) const;
+  template <typename Visit>
+  static void visitMeeting(const MovingBoxTree& tree, const Slot& slot,
+                           const MeetingQuery& query, Visit&& visit);
+  void findMoving(const MeetingQuery& query, std::vector<SlotPair>& near) const;
+  void findResting(const MeetingQuery& query, std::vector<SlotPair>& near) const;
   void findRestingOf(SlotNumber i, std::vector<SlotPair>& near) const;
   void refreshResting() const;
   void sort(std::vector<Found>& found) const;

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "manager_scenes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <utility>
 
 #include "fcl/geometry/octree/octree.h"
 #include "fcl/geometry/shape/box.h"
@@ -150,6 +153,11 @@ void ManagerScene::change() {
     const std::size_t gone = 1 + random_.index(objects.size() - 1);
     manager.unregisterObject(objects[gone]);
     filters.erase(objects[gone]);
+    thickness.erase(objects[gone]);
+    for (auto it = pair_distances.begin(); it != pair_distances.end();)
+      it = it->first.first == objects[gone] || it->first.second == objects[gone]
+               ? pair_distances.erase(it)
+               : std::next(it);
     objects.erase(objects.begin() + std::ptrdiff_t(gone));
     manager.registerObject(make(false));
     setFilter(objects.back());
@@ -177,6 +185,38 @@ const ContinuousFilter& ManagerScene::filterOf(const Object* object) const {
   static const ContinuousFilter none;
   const auto entry = filters.find(object);
   return entry == filters.end() ? none : entry->second;
+}
+
+void ManagerScene::addThickness(bool with_pairs) {
+  for (Object* object : objects)
+    if (random_.index(2) == 0) {
+      thickness[object] = random_.index(4) == 0 ? 0 : random_.uniform(0, .2);
+      manager.setThickness(object, thickness[object]);
+    }
+  if (!with_pairs) return;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    Object *o1 = objects[random_.index(objects.size())],
+           *o2 = objects[random_.index(objects.size())];
+    const double distance = random_.index(3) == 0 ? 0 : random_.uniform(0, .5);
+    manager.setPairDistance(o1, o2, distance);
+    const std::pair<const Object*, const Object*> pair(std::min(o1, o2),
+                                                       std::max(o1, o2));
+    pair_distances[pair] = distance;
+    if (random_.index(8) == 0) {
+      manager.resetPairDistance(o2, o1);
+      pair_distances.erase(pair);
+    }
+  }
+}
+
+double ManagerScene::distanceOf(const Object* o1, const Object* o2) const {
+  const auto entry = pair_distances.find({std::min(o1, o2), std::max(o1, o2)});
+  if (entry != pair_distances.end()) return entry->second;
+  const auto of = [this](const Object* o) {
+    const auto own = thickness.find(o);
+    return own == thickness.end() ? 0 : own->second;
+  };
+  return of(o1) + of(o2);
 }
 
 TestMesh ManagerScene::clothFrame() {

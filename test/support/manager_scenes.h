@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "fcl/broadphase/continuous_collision_manager.h"
@@ -36,11 +37,19 @@ class ManagerScene {
   /// @brief The filter of an object; of one without, the default.
   const ContinuousFilter& filterOf(const Object* object) const;
 
+  /// @brief Gives a thickness to half of the objects, and to some pairs a distance.
+  void addThickness(bool with_pairs);
+  /// @brief What two objects add to the distance of a query.
+  double distanceOf(const Object* o1, const Object* o2) const;
+
   ContinuousCollisionManager<double> manager;
   /// Whether all paths are straight.
   bool is_straight;
   std::vector<Object*> objects;
   std::map<const Object*, ContinuousFilter> filters;
+  std::map<const Object*, double> thickness;
+  /// The lower address first.
+  std::map<std::pair<const Object*, const Object*>, double> pair_distances;
 
  private:
   using Deformable = DeformableBVHModel<KDOP<double, 16>>;

@@ -385,9 +385,21 @@ bool CollisionRobot<S>::checkPath(const detail::ChainPathPtr& path,
       step.pairs(obstacles ? &obstacles->boxes_ : nullptr, Manager::settingsOf(request),
                  is_any ? Step::Order::kObstaclesFirst : Step::Order::kTime);
   result.num_box_pairs = pairs.size();
+  const bool has_distances = obstacles && !obstacles->distances_.empty();
+  Request common = request;
+  // An obstacle may have a thickness where the request has no distance.
+  if (has_distances && !(request.min_distance > 0))
+    common.ignore_initially_closer = false;
   result.pairs = detail::answersOf<PairResult>(
-      pairs, request,
+      pairs, common,
       [&](const detail::RobotPair& pair, Request& asked, PairResult& tested) {
+        if (has_distances) {
+          asked.min_distance = request.min_distance;
+          if (pair.object)
+            asked.min_distance += obstacles->distances_.thicknessOf(pair.object);
+          asked.ignore_initially_closer =
+              request.ignore_initially_closer && asked.min_distance > 0;
+        }
         ++result.num_tested;
         return test(step, pair, obstacles, asked, tested);
       });

@@ -6,11 +6,8 @@
 #define FCL_BROADPHASE_CONTINUOUS_COLLISION_MANAGER_H
 
 #include <algorithm>
-#include <cassert>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <string>
 #include <unordered_map>
@@ -18,10 +15,12 @@
 #include <vector>
 
 #include "fcl/broadphase/broadphase_continuous_collision_manager.h"
+#include "fcl/broadphase/detail/nearest_objects.h"
+#include "fcl/broadphase/detail/object_distances.h"
+#include "fcl/broadphase/detail/object_motions.h"
 #include "fcl/broadphase/detail/pair_answers.h"
 #include "fcl/broadphase/swept_collision_object.h"
 #include "fcl/narrowphase/continuous_collision.h"
-#include "fcl/narrowphase/continuous_distance.h"
 
 namespace fcl {
 
@@ -62,92 +61,6 @@ struct ContinuousManagerResult {
 
 using ContinuousManagerResultf = ContinuousManagerResult<float>;
 using ContinuousManagerResultd = ContinuousManagerResult<double>;
-
-/// @brief The least distance of many objects during the step.
-template <typename S>
-struct ContinuousManagerDistance {
-  /// @brief The two objects that come nearest; null if no distance was computed: no pair
-  /// counts, or all stay further apart than max_distance.
-  ContinuousCollisionObject<S>* o1{nullptr};
-  ContinuousCollisionObject<S>* o2{nullptr};
-
-  /// @brief The distance, of o1 and o2, and the bound for all pairs: no two objects are
-  /// nearer than distance_lo during the step. Both distances are infinite if no pair
-  /// counts; with a finite max_distance that is the same as if all were cut off. If any
-  /// two objects touch, the answer is about the two that touch first.
-  ContinuousDistanceResult<S> result;
-
-  /// @brief The number of pairs whose distance was looked for.
-  std::size_t num_tested{0};
-};
-
-using ContinuousManagerDistancef = ContinuousManagerDistance<float>;
-using ContinuousManagerDistanced = ContinuousManagerDistance<double>;
-
-namespace detail {
-
-/// The answer without a pair.
-template <typename S>
-ContinuousManagerDistance<S> noPair() {
-  ContinuousManagerDistance<S> none;
-  none.result.distance_lo = none.result.distance_hi = std::numeric_limits<S>::infinity();
-  return none;
-}
-
-/// @brief Takes the distance of two objects into the least of all.
-template <typename S>
-void takeDistance(ContinuousCollisionObject<S>* o1, ContinuousCollisionObject<S>* o2,
-                  const ContinuousDistanceResult<S>& tested,
-                  ContinuousManagerDistance<S>& nearest) {
-  ++nearest.num_tested;
-  const S lower = std::min(nearest.result.distance_lo, tested.distance_lo);
-  if (tested.distance_hi < nearest.result.distance_hi) {
-    nearest.o1 = o1;
-    nearest.o2 = o2;
-    nearest.result = tested;
-  }
-  nearest.result.distance_lo = lower;
-  assert(!(nearest.result.distance_lo > nearest.result.distance_hi));
-}
-
-/// Whether both are planes or halfspaces. The node type of a mesh may not be asked for:
-/// it is that of FCL's tree, which may be missing.
-template <typename S>
-bool areFlats(const ContinuousCollisionObject<S>& o1,
-              const ContinuousCollisionObject<S>& o2) {
-  const auto isFlat = [](const ContinuousCollisionObject<S>& o) {
-    return o.getObjectType() == OT_GEOM &&
-           (o.getNodeType() == GEOM_PLANE || o.getNodeType() == GEOM_HALFSPACE);
-  };
-  return isFlat(o1) && isFlat(o2);
-}
-
-}  // namespace detail
-
-/// @brief For DefaultContinuousDistanceFunction(), in the way of FCL's
-/// DefaultDistanceData.
-template <typename S>
-struct DefaultContinuousDistanceData {
-  ContinuousDistanceRequest<S> request;
-
-  /// @brief The nearest pair so far. Before the first one its distances are infinite.
-  ContinuousManagerDistance<S> nearest{detail::noPair<S>()};
-
-  /// @brief Whether no other pair can be nearer: two objects touch.
-  bool done{false};
-};
-
-/// @brief A callback for ContinuousCollisionManager::distance(), in the way of FCL's
-/// DefaultDistanceFunction: it keeps the nearest pair. If objects touch it stops at two
-/// that do; which touch first, it does not say.
-/// @param o1, o2  objects of the manager: their getUserData() are the ones that move
-/// @param cdata  a DefaultContinuousDistanceData of the same number type
-/// @param dist  is lowered to the least distance so far
-/// @return whether the search may end
-/// @throws fcl::Exception  as continuousDistance()
-template <typename S>
-bool DefaultContinuousDistanceFunction(CollisionObject<S>* o1, CollisionObject<S>* o2,
-                                       void* cdata, S& dist);
 
 /// @brief Finds the contacts of many objects that move. FCL declares the interface
 /// BroadPhaseContinuousCollisionManager and has no class that implements it; this class
@@ -216,6 +129,38 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   void update(Object* object) override;
   /// @brief Reads these objects again, for example those that moved.
   void update(const std::vector<Object*>& objects) override;
+
+  /// @brief Gives an object a new motion, and reads the object. If it was part of a
+  /// motion before, the old one is released.
+  void setMotion(Object* object, const std::shared_ptr<MotionBase<S>>& motion);
+  /// @brief The same for many objects, one motion each.
+  void setMotion(const std::vector<Object*>& objects,
+                 const std::vector<std::shared_ptr<MotionBase<S>>>& motions);
+  /// @brief The motion from one pose to another: the origin goes straight, the rotation
+  /// turns about one axis at a constant rate (FCL's InterpMotion). If rotations are equal
+  /// it is a TranslationMotion, as a mesh that deforms needs it. In float, where FCL has
+  /// no motion that turns, a TwistMotion about the origin.
+  void setMotion(Object* object, const Transform3<S>& tf_beg,
+                 const Transform3<S>& tf_end);
+  /// @brief The next step of an object: the motion from where its motion ends to a pose.
+  void step(Object* object, const Transform3<S>& tf_end);
+  /// @brief The same for many objects, one pose each.
+  void step(const std::vector<Object*>& objects,
+            const std::vector<Transform3<S>>& tf_end);
+
+  /// @brief Sets the thickness of an object, in the unit of the coordinates: two objects
+  /// are in contact when they come within the sum of both thicknesses, in addition to the
+  /// request's min_distance; an object with itself within twice its own. Of an object
+  /// that is not registered it is 0.
+  ///
+  /// It acts in the queries for contacts that take a request, and in the pairs of all
+  /// callbacks for contacts. distance() is that of the geometries.
+  void setThickness(Object* object, S thickness);
+  /// @brief Sets the distance of two objects of this manager, in place of the sum of
+  /// their thicknesses. Not between objects of two managers.
+  void setPairDistance(Object* o1, Object* o2, S distance);
+  /// @brief Takes back setPairDistance().
+  void resetPairDistance(Object* o1, Object* o2);
 
   /// @brief Sets with which objects this one can be in contact. Callbacks do not get a
   /// pair that the filters reject. Groups of triangles act in the queries that take a
@@ -338,10 +283,14 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
     return !filter.triangle_groups.empty() || !filter.triangle_masks.empty();
   }
   std::string nameOf(const Object* object) const;
+  S distanceOf(const Object* o1, const ContinuousCollisionManager& other,
+               const Object* o2) const;
+  void requireRegistered(const Object* object, const char* query) const;
+  void setMargin(Object* object);
   bool test(const detail::BroadPhasePair& pair, const ContinuousCollisionManager& other,
             Request& request, Result& result, PairResult& tested) const;
   void answer(const Pairs& pairs, const ContinuousCollisionManager& other,
-              const Request& request, Result& result) const;
+              const Request& request, Result& result, bool with_thickness = true) const;
   static void callBack(const Pairs& pairs, void* cdata,
                        ContinuousCollisionCallBack<S> callback);
   CollisionObject<S>* sweptObject(Object* object) const;
@@ -365,6 +314,7 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   detail::ContinuousBroadPhase<S> boxes_;
   /// The filters that setFilter() has set.
   std::unordered_map<const Object*, ContinuousFilter> filters_;
+  detail::ObjectDistances<S> distances_;
   mutable SweptObjects swept_objects_;
 };
 
@@ -394,6 +344,7 @@ template <typename S>
 void ContinuousCollisionManager<S>::unregisterObject(Object* object) {
   boxes_.remove(object);
   filters_.erase(object);
+  distances_.forget(object);
   swept_objects_.erase(object);
 }
 
@@ -401,6 +352,7 @@ template <typename S>
 void ContinuousCollisionManager<S>::clear() {
   boxes_.clear();
   filters_.clear();
+  distances_.clear();
   swept_objects_.clear();
 }
 
@@ -426,6 +378,104 @@ void ContinuousCollisionManager<S>::update(const std::vector<Object*>& objects) 
   const std::vector<void*> addresses = addressesOf(objects);
   boxes_.update(addresses.data(), addresses.size(), &detail::readObject<S>,
                 &detail::prefetchObject<S>);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::setMotion(
+    const std::vector<Object*>& objects,
+    const std::vector<std::shared_ptr<MotionBase<S>>>& motions) {
+  detail::requireOneEach(objects.size(), motions.size(), "motion");
+  for (const auto& motion : motions) detail::requireNotNull(motion.get(), "motion");
+  const std::vector<void*> addresses = addressesOf(objects);
+  // Each object has its motion while it is read, and its old one if reading throws.
+  detail::MotionExchange<S> exchange(objects, motions);
+  boxes_.update(addresses.data(), addresses.size(), &detail::readObject<S>,
+                &detail::prefetchObject<S>);
+  exchange.keep();
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::setMotion(
+    Object* object, const std::shared_ptr<MotionBase<S>>& motion) {
+  setMotion(std::vector<Object*>{object},
+            std::vector<std::shared_ptr<MotionBase<S>>>{motion});
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::setMotion(Object* object, const Transform3<S>& tf_beg,
+                                              const Transform3<S>& tf_end) {
+  setMotion(object, detail::makeMotionBetween<S>(tf_beg, tf_end));
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::step(const std::vector<Object*>& objects,
+                                         const std::vector<Transform3<S>>& tf_end) {
+  detail::requireOneEach(objects.size(), tf_end.size(), "pose");
+  std::vector<std::shared_ptr<MotionBase<S>>> motions;
+  motions.reserve(objects.size());
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    detail::requireUsable(objects[i]);
+    motions.push_back(
+        detail::makeMotionBetween<S>(detail::lastPoseOf(*objects[i]), tf_end[i]));
+  }
+  setMotion(objects, motions);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::step(Object* object, const Transform3<S>& tf_end) {
+  step(std::vector<Object*>{object}, std::vector<Transform3<S>>{tf_end});
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::requireRegistered(const Object* object,
+                                                      const char* query) const {
+  if (!object || !boxes_.contains(object))
+    throw Exception(std::string(query) +
+                    ": the object is not registered in this manager. Call "
+                    "registerObject() first");
+}
+
+/// The box of an object, and with it the pairs that queries find, have its margin.
+template <typename S>
+void ContinuousCollisionManager<S>::setMargin(Object* object) {
+  boxes_.setMargin(object, static_cast<double>(distances_.marginOf(object)));
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::setThickness(Object* object, S thickness) {
+  requireRegistered(object, "setThickness");
+  detail::requireThickness(thickness, "the thickness");
+  distances_.setThickness(object, thickness);
+  setMargin(object);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::setPairDistance(Object* o1, Object* o2, S distance) {
+  requireRegistered(o1, "setPairDistance");
+  requireRegistered(o2, "setPairDistance");
+  detail::requireThickness(distance, "the distance");
+  distances_.setPair(o1, o2, distance);
+  setMargin(o1);
+  setMargin(o2);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::resetPairDistance(Object* o1, Object* o2) {
+  requireRegistered(o1, "resetPairDistance");
+  requireRegistered(o2, "resetPairDistance");
+  distances_.forgetPair(o1, o2);
+  setMargin(o1);
+  setMargin(o2);
+}
+
+/// What is added to the distance of a query for an object of this manager and one of
+/// another one.
+template <typename S>
+S ContinuousCollisionManager<S>::distanceOf(const Object* o1,
+                                            const ContinuousCollisionManager& other,
+                                            const Object* o2) const {
+  return &other == this ? distances_.of(o1, o2)
+                        : distances_.thicknessOf(o1) + other.distances_.thicknessOf(o2);
 }
 
 template <typename S>
@@ -538,12 +588,25 @@ bool ContinuousCollisionManager<S>::test(const detail::BroadPhasePair& pair,
 template <typename S>
 void ContinuousCollisionManager<S>::answer(const Pairs& pairs,
                                            const ContinuousCollisionManager& other,
-                                           const Request& request, Result& out) const {
+                                           const Request& request, Result& out,
+                                           bool with_thickness) const {
+  const bool has_distances =
+      with_thickness && (!distances_.empty() || !other.distances_.empty());
+  Request common = request;
+  // A pair may have a distance where the request has none.
+  if (has_distances && !(request.min_distance > 0))
+    common.ignore_initially_closer = false;
   Result result;
   result.num_box_pairs = pairs.size();
   result.pairs = detail::answersOf<PairResult>(
-      pairs, request,
+      pairs, common,
       [&](const detail::BroadPhasePair& pair, Request& asked, PairResult& tested) {
+        if (has_distances) {
+          asked.min_distance = request.min_distance +
+                               distanceOf(objectOf(pair.o1), other, objectOf(pair.o2));
+          asked.ignore_initially_closer =
+              request.ignore_initially_closer && asked.min_distance > 0;
+        }
         return test(pair, other, asked, result, tested);
       });
   result.is_collide = !result.pairs.empty();
@@ -650,159 +713,8 @@ const ContinuousCollisionManager<S>& ContinuousCollisionManager<S>::requireManag
                   "objects have no boxes that move. Register its objects in one");
 }
 
-template <typename S>
-typename ContinuousCollisionManager<S>::Pairs ContinuousCollisionManager<S>::pairsOf(
-    const Sides& sides, const detail::BroadPhaseSettings& settings) const {
-  Pairs pairs = sides.object
-                    ? boxes_.pairsOf(sides.object, &detail::readObject<S>, settings)
-                : sides.other ? boxes_.pairsWith(sides.other->boxes_, settings)
-                              : boxes_.pairs(settings);
-  const auto areFlats = [](const detail::BroadPhasePair& pair) {
-    return detail::areFlats(*objectOf(pair.o1), *objectOf(pair.o2));
-  };
-  pairs.erase(std::remove_if(pairs.begin(), pairs.end(), areFlats), pairs.end());
-  return pairs;
-}
-
-template <typename S>
-template <typename Visit>
-void ContinuousCollisionManager<S>::visitNearest(const Sides& sides, S t_max, S limit,
-                                                 const Visit& visit) const {
-  const detail::NearestSettings settings{
-      static_cast<double>(t_max), static_cast<double>(limit),
-      [&visit, &limit](const detail::NearPair& pair) {
-        Object *const o1 = objectOf(pair.o1), *const o2 = objectOf(pair.o2);
-        if (!detail::areFlats(*o1, *o2)) limit = visit(o1, o2);
-        return static_cast<double>(limit);
-      }};
-  if (sides.object)
-    boxes_.visitNearestOf(sides.object, &detail::readObject<S>, settings);
-  else if (sides.other)
-    boxes_.visitNearestWith(sides.other->boxes_, settings);
-  else
-    boxes_.visitNearest(settings);
-}
-
-template <typename S>
-void ContinuousCollisionManager<S>::answerDistance(
-    const Sides& sides, const ContinuousDistanceRequest<S>& request,
-    ContinuousManagerDistance<S>& out) const {
-  detail::requireValid(request);
-  const ContinuousCollisionManager& other = sides.other ? *sides.other : *this;
-  ContinuousManagerDistance<S> nearest = detail::noPair<S>();
-  ContinuousDistanceRequest<S> asked = request;
-  const auto test = [&](Object* o1, Object* o2) {
-    asked.filter1 = filterOf(o1);
-    asked.filter2 = other.filterOf(o2);
-    ContinuousDistanceResult<S> tested;
-    try {
-      continuousDistance(o1->collisionGeometry().get(), o1->getMotion(),
-                         o2->collisionGeometry().get(), o2->getMotion(), asked, tested);
-    } catch (const Exception& error) {
-      throw Exception("o1 is " + nameOf(o1) + ", o2 is " + other.nameOf(o2) + ": " +
-                      error.what());
-    }
-    detail::takeDistance(o1, o2, tested, nearest);
-  };
-
-  const Request contact = detail::contactRequestOf(request);
-  Result first;
-  answer(pairsOf(sides, settingsOf(contact)), other, contact, first);
-  if (first.is_collide) {
-    test(first.pairs.front().o1, first.pairs.front().o2);
-    out = nearest;
-    return;
-  }
-  visitNearest(sides, request.t_max, request.max_distance, [&](Object* o1, Object* o2) {
-    test(o1, o2);
-    asked.max_distance = std::min(request.max_distance, nearest.result.distance_hi);
-    return asked.max_distance > 0 ? asked.max_distance : S(-1);
-  });
-  // Pairs that were not looked at are further apart than the nearest one, or than is of
-  // interest.
-  ContinuousDistanceResult<S>& result = nearest.result;
-  result.distance_lo =
-      std::min({result.distance_lo, result.distance_hi, request.max_distance});
-  result.is_cut_off =
-      std::isfinite(request.max_distance) && result.distance_lo == request.max_distance;
-  out = nearest;
-}
-
-template <typename S>
-void ContinuousCollisionManager<S>::distance(const ContinuousDistanceRequest<S>& request,
-                                             ContinuousManagerDistance<S>& result) const {
-  answerDistance({nullptr, nullptr}, request, result);
-}
-
-template <typename S>
-void ContinuousCollisionManager<S>::distance(Object* object,
-                                             const ContinuousDistanceRequest<S>& request,
-                                             ContinuousManagerDistance<S>& result) const {
-  detail::requireUsable(object);
-  answerDistance({nullptr, object}, request, result);
-}
-
-template <typename S>
-void ContinuousCollisionManager<S>::distance(const ContinuousCollisionManager& other,
-                                             const ContinuousDistanceRequest<S>& request,
-                                             ContinuousManagerDistance<S>& result) const {
-  answerDistance({&other == this ? nullptr : &other, nullptr}, request, result);
-}
-
-template <typename S>
-void ContinuousCollisionManager<S>::callBack(const Sides& sides, void* cdata,
-                                             DistanceCallBack<S> callback) const {
-  const ContinuousCollisionManager& other = sides.other ? *sides.other : *this;
-  S dist = std::numeric_limits<S>::max();
-  visitNearest(sides, S(1), dist, [&](Object* o1, Object* o2) {
-    const bool ends = callback(sweptObject(o1), other.sweptObject(o2), cdata, dist);
-    return ends ? S(-1) : dist;
-  });
-}
-
-template <typename S>
-void ContinuousCollisionManager<S>::distance(void* cdata,
-                                             DistanceCallBack<S> callback) const {
-  callBack(Sides{nullptr, nullptr}, cdata, callback);
-}
-
-template <typename S>
-void ContinuousCollisionManager<S>::distance(Object* object, void* cdata,
-                                             DistanceCallBack<S> callback) const {
-  detail::requireUsable(object);
-  callBack(Sides{nullptr, object}, cdata, callback);
-}
-
-template <typename S>
-void ContinuousCollisionManager<S>::distance(
-    BroadPhaseContinuousCollisionManager<S>* other, void* cdata,
-    DistanceCallBack<S> callback) const {
-  if (other == this) return distance(cdata, callback);
-  callBack(Sides{&requireManager(other, "distance"), nullptr}, cdata, callback);
-}
-
-template <typename S>
-bool DefaultContinuousDistanceFunction(CollisionObject<S>* o1, CollisionObject<S>* o2,
-                                       void* cdata, S& dist) {
-  auto& data = *static_cast<DefaultContinuousDistanceData<S>*>(cdata);
-  if (data.done) return true;
-  ContinuousDistanceRequest<S> request = data.request;
-  request.max_distance = std::min(request.max_distance, dist);
-  auto *moving1 = static_cast<ContinuousCollisionObject<S>*>(o1->getUserData()),
-       *moving2 = static_cast<ContinuousCollisionObject<S>*>(o2->getUserData());
-  ContinuousDistanceResult<S> tested;
-  continuousDistance(moving1->collisionGeometry().get(), moving1->getMotion(),
-                     moving2->collisionGeometry().get(), moving2->getMotion(), request,
-                     tested);
-  detail::takeDistance(moving1, moving2, tested, data.nearest);
-  // Others stay further apart than is asked for.
-  S& lower = data.nearest.result.distance_lo;
-  lower = std::min(lower, data.request.max_distance);
-  dist = std::min(request.max_distance, tested.distance_hi);
-  data.done = tested.is_collide;
-  return data.done;
-}
-
 }  // namespace fcl
+
+#include "fcl/broadphase/detail/manager_distances.h"
 
 #endif

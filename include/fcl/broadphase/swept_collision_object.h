@@ -82,6 +82,8 @@ class FCL_EXPORT ContinuousBroadPhase {
   void clear();
   void setFilter(const void* object, std::uint32_t group, std::uint32_t mask);
   void setSelf(const void* object, bool self);
+  /// A pair counts from the distance of a query plus the margins of both objects.
+  void setMargin(const void* object, double margin);
 
   std::size_t size() const;
   bool contains(const void* object) const;
