@@ -295,7 +295,8 @@ class CollisionManager(_arguments.Built):
         name : optional, a registered object, which is o1, with all others
 
         The other keywords are those of collide(). query is about pairs too, see
-        ManagerResult; num_max_contacts and num_threads are for each pair.
+        ManagerResult; num_max_contacts is for each pair. num_threads is for pairs, of which
+        each thread tests one at a time, and for each pair.
 
         Raises RuntimeError if a mesh was updated after the manager had read it.
         """

@@ -7,8 +7,10 @@
 
 #include "api/meeting_query.h"
 #include "base/default_floating_point.h"
+#include "base/parallel.h"
 #include "base/prefetch.h"
 #include "broadphase/broad_phase.h"
+#include "fcl/broadphase/detail/pair_answers.h"
 #include "fcl/broadphase/swept_collision_object.h"
 #include "prepare/object_bounds.h"
 #include "prepare/query_arguments.h"
@@ -247,6 +249,11 @@ void ContinuousBroadPhase<S>::visitNearestWith(const ContinuousBroadPhase& other
                                                const NearestSettings& settings) const {
   const DefaultFloatingPoint mode;
   boxes_->visitNearestWith(*other.boxes_, nearestQueryOf(settings));
+}
+
+void visitInThreads(std::size_t count, int num_threads,
+                    const std::function<void(std::size_t)>& visit) {
+  deformable::parallelFor(count, num_threads, visit);
 }
 
 template class ContinuousBroadPhase<double>;

@@ -43,6 +43,7 @@ Request randomRequest(Random& random, bool straight) {
   Request request;
   if (straight && random.index(2) == 0) request.min_distance = .05;
   if (random.index(4) == 0) request.t_max = .6;
+  if (random.index(2) == 0) request.num_threads = 3;
   return request;
 }
 
@@ -57,6 +58,7 @@ using Truth = std::map<Pair, PairTruth>;
 
 Result ask(const Scene& scene, const Object* a, const Object* b, Request request,
            bool with_thickness = true) {
+  request.num_threads = 1;
   request.filter1 = scene.filterOf(a);
   request.filter2 = scene.filterOf(b);
   if (a == b) {
@@ -168,6 +170,23 @@ void expectTwoManagers(Scene& scene, Request request, const Truth& truth) {
   }
 }
 
+/// The answer of one thread, with the same pairs in the same order.
+void expectSameOrder(const Scene& scene, Request request, const ManagerResult& result) {
+  request.num_threads = 1;
+  ManagerResult one;
+  scene.manager.collide(request, one);
+  ASSERT_EQ(result.pairs.size(), one.pairs.size());
+  for (std::size_t i = 0; i < one.pairs.size(); ++i) {
+    EXPECT_EQ(result.pairs[i].o1, one.pairs[i].o1);
+    EXPECT_EQ(result.pairs[i].o2, one.pairs[i].o2);
+    expectIdentical(result.pairs[i].result, one.pairs[i].result);
+  }
+  // Of a query for the first contact it may depend on brackets.
+  if (request.query != ContinuousQuery::kFirst) {
+    EXPECT_EQ(result.num_tested, one.num_tested);
+  }
+}
+
 /// @return the pairs in contact
 Truth expectAnswers(Scene& scene, Request request, std::size_t one) {
   const Truth truth = bruteForce(scene, request);
@@ -175,12 +194,15 @@ Truth expectAnswers(Scene& scene, Request request, std::size_t one) {
   request.query = ContinuousQuery::kFirst;
   scene.manager.collide(request, result);
   expectFirst(result, truth);
+  expectSameOrder(scene, request, result);
   request.query = ContinuousQuery::kAny;
   scene.manager.collide(request, result);
   expectAny(result, truth);
+  expectSameOrder(scene, request, result);
   request.query = ContinuousQuery::kAll;
   scene.manager.collide(request, result);
   expectAll(result, truth);
+  expectSameOrder(scene, request, result);
   expectOneWithAll(scene, scene.objects[one], request, truth);
   // The distance of a pair is for objects of one manager.
   if (scene.pair_distances.empty()) expectTwoManagers(scene, request, truth);

@@ -390,7 +390,7 @@ bool CollisionRobot<S>::checkPath(const detail::ChainPathPtr& path,
   // An obstacle may have a thickness where the request has no distance.
   if (has_distances && !(request.min_distance > 0))
     common.ignore_initially_closer = false;
-  result.pairs = detail::answersOf<PairResult>(
+  auto answers = detail::answersOf<PairResult>(
       pairs, common,
       [&](const detail::RobotPair& pair, Request& asked, PairResult& tested) {
         if (has_distances) {
@@ -400,9 +400,10 @@ bool CollisionRobot<S>::checkPath(const detail::ChainPathPtr& path,
           asked.ignore_initially_closer =
               request.ignore_initially_closer && asked.min_distance > 0;
         }
-        ++result.num_tested;
         return test(step, pair, obstacles, asked, tested);
       });
+  result.num_tested = answers.num_tested;
+  result.pairs = std::move(answers.pairs);
   result.is_free = result.pairs.empty();
   if (!result.is_free)
     result.time_of_contact = result.pairs.front().result.time_of_contact;

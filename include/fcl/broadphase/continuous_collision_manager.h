@@ -89,8 +89,9 @@ using ContinuousManagerResultd = ContinuousManagerResult<double>;
 ///
 /// Thread-safety: const functions may run at the same time, except those that call back
 /// with FCL's CollisionCallBack or DistanceCallBack. The broad phase itself runs in the
-/// caller's thread; ContinuousContactRequest::num_threads is for the queries of pairs.
-/// Answers do not depend on it.
+/// caller's thread. ContinuousContactRequest::num_threads is for the pairs, which several
+/// threads test at the same time, and for the query of each of them; with
+/// accepts_triangles pairs come one after the other. Answers do not depend on it.
 ///
 /// The manager does not own the objects. They must live until they are unregistered.
 ///
@@ -288,7 +289,7 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   void requireRegistered(const Object* object, const char* query) const;
   void setMargin(Object* object);
   bool test(const detail::BroadPhasePair& pair, const ContinuousCollisionManager& other,
-            Request& request, Result& result, PairResult& tested) const;
+            Request& request, PairResult& tested) const;
   void answer(const Pairs& pairs, const ContinuousCollisionManager& other,
               const Request& request, Result& result, bool with_thickness = true) const;
   static void callBack(const Pairs& pairs, void* cdata,
@@ -559,8 +560,7 @@ std::string ContinuousCollisionManager<S>::nameOf(const Object* object) const {
 template <typename S>
 bool ContinuousCollisionManager<S>::test(const detail::BroadPhasePair& pair,
                                          const ContinuousCollisionManager& other,
-                                         Request& request, Result& result,
-                                         PairResult& tested) const {
+                                         Request& request, PairResult& tested) const {
   tested.o1 = objectOf(pair.o1);
   tested.o2 = objectOf(pair.o2);
   const ContinuousFilter &filter1 = filterOf(tested.o1),
@@ -570,7 +570,6 @@ bool ContinuousCollisionManager<S>::test(const detail::BroadPhasePair& pair,
     request.filter1 = filter1;
     request.filter2 = filter2;
   }
-  ++result.num_tested;
   try {
     if (pair.o1 == pair.o2)
       fcl::continuousSelfCollide(tested.o1->collisionGeometry().get(), request,
@@ -596,9 +595,7 @@ void ContinuousCollisionManager<S>::answer(const Pairs& pairs,
   // A pair may have a distance where the request has none.
   if (has_distances && !(request.min_distance > 0))
     common.ignore_initially_closer = false;
-  Result result;
-  result.num_box_pairs = pairs.size();
-  result.pairs = detail::answersOf<PairResult>(
+  auto answers = detail::answersOf<PairResult>(
       pairs, common,
       [&](const detail::BroadPhasePair& pair, Request& asked, PairResult& tested) {
         if (has_distances) {
@@ -607,8 +604,12 @@ void ContinuousCollisionManager<S>::answer(const Pairs& pairs,
           asked.ignore_initially_closer =
               request.ignore_initially_closer && asked.min_distance > 0;
         }
-        return test(pair, other, asked, result, tested);
+        return test(pair, other, asked, tested);
       });
+  Result result;
+  result.num_box_pairs = pairs.size();
+  result.num_tested = answers.num_tested;
+  result.pairs = std::move(answers.pairs);
   result.is_collide = !result.pairs.empty();
   if (result.is_collide)
     result.time_of_contact = result.pairs.front().result.time_of_contact;

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Tests box pairs in the order of their windows: for the first contact, any or all.
+// Several threads test a block of pairs at a time, whose answers are then taken in order:
+// what is taken does not depend on the number of threads.
 #ifndef FCL_BROADPHASE_DETAIL_PAIR_ANSWERS_H
 #define FCL_BROADPHASE_DETAIL_PAIR_ANSWERS_H
 
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <exception>
+#include <functional>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -31,13 +35,90 @@ void sortByTime(std::vector<Answer>& pairs) {
   pairs = std::move(sorted);
 }
 
+/// @brief Calls visit(0) ... visit(count - 1), each once, in up to num_threads threads
+/// (0: as many as the oneTBB task arena around the call has).
+/// @pre visit does not throw
+FCL_EXPORT void visitInThreads(std::size_t count, int num_threads,
+                               const std::function<void(std::size_t)>& visit);
+
+/// @brief The answers of pairs, a block of them at a time.
+/// @tparam Test  bool test(pair, request, answer): whether a pair is in contact. It may
+/// change the request
+template <typename Answer, typename S, typename Pair, typename Test>
+class PairTests {
+ public:
+  using Request = ContinuousContactRequest<S>;
+
+  /// What a pair has got. A pair that throws has got nothing.
+  struct Tested {
+    bool is_collide{false};
+    std::exception_ptr error;
+    Answer answer;
+  };
+
+  /// A filter of the user may not be made for calls in several threads, which come only
+  /// for large meshes otherwise: pairs come one after the other then.
+  PairTests(const std::vector<Pair>& pairs, const Request& request, const Test& test)
+      : pairs_(pairs),
+        test_(test),
+        num_threads_(request.accepts_triangles ? 1 : request.num_threads) {}
+
+  /// The pairs of the next block: one, if there are no threads.
+  std::size_t nextBlock(std::size_t first) {
+    const std::size_t count = std::min(block_, pairs_.size() - first);
+    if (num_threads_ != 1) block_ = std::min<std::size_t>(2 * block_, kMostInBlock);
+    return count;
+  }
+
+  /// Tests a block of pairs. Those that begin after the request's t_max are left out.
+  std::vector<Tested>& test(std::size_t first, std::size_t count, Request& request) {
+    block_tested_.clear();
+    block_tested_.resize(count);
+    if (count == 1) {
+      testOne(pairs_[first], request, block_tested_[0]);
+      return block_tested_;
+    }
+    detail::visitInThreads(count, num_threads_, [&](std::size_t i) {
+      Request own = request;
+      testOne(pairs_[first + i], own, block_tested_[i]);
+    });
+    return block_tested_;
+  }
+
+ private:
+  void testOne(const Pair& pair, Request& request, Tested& tested) const {
+    if (pair.t_lo > static_cast<double>(request.t_max)) return;
+    try {
+      tested.is_collide = test_(pair, request, tested.answer);
+    } catch (...) {
+      tested.error = std::current_exception();
+    }
+  }
+
+  static constexpr std::size_t kMostInBlock = 1024;
+
+  const std::vector<Pair>& pairs_;
+  const Test& test_;
+  const int num_threads_;
+  std::size_t block_{1};
+  std::vector<Tested> block_tested_;
+};
+
+/// @brief Pairs in contact, and how many were tested.
+template <typename Answer>
+struct PairAnswers {
+  std::vector<Answer> pairs;
+  std::size_t num_tested{0};
+};
+
 /// The bracket of a contact may depend on t_max, by up to toc_err. So if the times of two
 /// pairs differ by less, their order may depend on it too. Therefore pairs are tested up
 /// to 2 toc_err after the best time. At the end those in this range are tested again, up
-/// to the request's t_max. So the answer does not depend on the order of the tests.
+/// to the request's t_max. So the answer does not depend on the order of the tests, nor
+/// on how many pairs are in a block.
 /// @return the pair that is first in contact, or none
 template <typename Answer, typename S, typename Pair, typename Test>
-std::vector<Answer> firstAnswer(const std::vector<Pair>& pairs,
+PairAnswers<Answer> firstAnswer(const std::vector<Pair>& pairs,
                                 const ContinuousContactRequest<S>& asked,
                                 const Test& test) {
   struct InContact {
@@ -49,38 +130,55 @@ std::vector<Answer> firstAnswer(const std::vector<Pair>& pairs,
   ContinuousContactRequest<S> request = asked;
   const S range =
       2 * std::max(asked.toc_err, S(0)) + 64 * std::numeric_limits<S>::epsilon();
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    assert(i == 0 || pairs[i - 1].t_lo <= pairs[i].t_lo);
-    if (pairs[i].t_lo > static_cast<double>(request.t_max)) break;
-    Answer tested;
-    if (!test(pairs[i], request, tested)) continue;
-    const S latest = tested.result.time_of_contact + range;
-    found.push_back({i, request.t_max < asked.t_max, std::move(tested)});
-    request.t_max = std::min(request.t_max, latest);
+  PairAnswers<Answer> out;
+  PairTests<Answer, S, Pair, Test> tests(pairs, request, test);
+  // Nothing is earlier than 0.
+  bool is_done = false;
+  for (std::size_t first = 0; first < pairs.size() && !is_done;) {
+    const std::size_t count = tests.nextBlock(first);
+    const bool is_cut = request.t_max < asked.t_max;
+    auto& block = tests.test(first, count, request);
+    for (std::size_t i = 0; i < count && !is_done; ++i) {
+      const Pair& pair = pairs[first + i];
+      assert(first + i == 0 || pairs[first + i - 1].t_lo <= pair.t_lo);
+      if (pair.t_lo > static_cast<double>(request.t_max)) break;
+      ++out.num_tested;
+      if (block[i].error) std::rethrow_exception(block[i].error);
+      if (!block[i].is_collide) continue;
+      const S time = block[i].answer.result.time_of_contact;
+      // Another pair of the block made t_max earlier.
+      if (time > request.t_max) continue;
+      found.push_back({first + i, is_cut, std::move(block[i].answer)});
+      request.t_max = std::min(request.t_max, time + range);
+      is_done = time <= 0;
+    }
+    first += count;
+    if (first < pairs.size() && pairs[first].t_lo > static_cast<double>(request.t_max))
+      break;
   }
   const S latest = request.t_max;
   request.t_max = asked.t_max;
-  std::vector<Answer> first;
   for (InContact& contact : found) {
     if (contact.tested.result.time_of_contact > latest) continue;
     if (contact.is_cut) test(pairs[contact.pair], request, contact.tested);
-    if (first.empty())
-      first.push_back(std::move(contact.tested));
-    else if (contact.tested.result.time_of_contact < first.front().result.time_of_contact)
-      first.front() = std::move(contact.tested);
+    if (out.pairs.empty())
+      out.pairs.push_back(std::move(contact.tested));
+    else if (contact.tested.result.time_of_contact <
+             out.pairs.front().result.time_of_contact)
+      out.pairs.front() = std::move(contact.tested);
   }
   // The earliest of those that were found is no later than `latest`.
-  assert(first.empty() == found.empty());
-  return first;
+  assert(out.pairs.empty() == found.empty());
+  return out;
 }
 
 /// @brief The pairs in contact that a request asks for, sorted by time.
 /// @param pairs  sorted by t_lo
-/// @param asked  the test may set its filters
-/// @param test  bool test(pair, request, answer): whether a pair is in contact
+/// @param asked  the test may set its filters. Its num_threads is for the pairs
+/// @param test  as for PairTests; several threads call it if the request has them
 /// @throws fcl::Exception  a field of the request has no valid value, also without pairs
 template <typename Answer, typename S, typename Pair, typename Test>
-std::vector<Answer> answersOf(const std::vector<Pair>& pairs,
+PairAnswers<Answer> answersOf(const std::vector<Pair>& pairs,
                               const ContinuousContactRequest<S>& asked,
                               const Test& test) {
   requireValid(asked);
@@ -88,15 +186,22 @@ std::vector<Answer> answersOf(const std::vector<Pair>& pairs,
   request.filter1 = request.filter2 = ContinuousFilter();
   if (request.query == ContinuousQuery::kFirst)
     return detail::firstAnswer<Answer>(pairs, request, test);
-  std::vector<Answer> answers;
-  for (const Pair& pair : pairs) {
-    Answer tested;
-    if (!test(pair, request, tested)) continue;
-    answers.push_back(std::move(tested));
-    if (request.query == ContinuousQuery::kAny) break;
+  PairAnswers<Answer> out;
+  PairTests<Answer, S, Pair, Test> tests(pairs, request, test);
+  const bool is_any = request.query == ContinuousQuery::kAny;
+  for (std::size_t first = 0; first < pairs.size() && !(is_any && !out.pairs.empty());) {
+    const std::size_t count = tests.nextBlock(first);
+    for (auto& tested : tests.test(first, count, request)) {
+      ++out.num_tested;
+      if (tested.error) std::rethrow_exception(tested.error);
+      if (!tested.is_collide) continue;
+      out.pairs.push_back(std::move(tested.answer));
+      if (is_any) break;
+    }
+    first += count;
   }
-  detail::sortByTime<S>(answers);
-  return answers;
+  detail::sortByTime<S>(out.pairs);
+  return out;
 }
 
 }  // namespace detail
