@@ -536,11 +536,12 @@ class Step {
     // Points on a line have no inertia about it, but for rounding: they do not turn about
     // it.
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(inertia);
+    const double least = options_.rounds_to_float ? 1e-6 : 1e-12;
     fcl::Vector3d turn = fcl::Vector3d::Zero();
     for (int i = 0; i < 3; ++i) {
       const fcl::Vector3d axis = axes.eigenvectors().col(i);
       const double about_axis = axes.eigenvalues()[i];
-      if (about_axis > 1e-12 * axes.eigenvalues()[2])
+      if (about_axis > least * axes.eigenvalues()[2])
         turn += axis.dot(momentum) / about_axis * axis;
     }
     // Less than half a turn: on straight ways the vertices keep the sides that they are

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws OBJ meshes beside each other, seen from one side: draw_meshes.py PICTURE.png MESH.obj ...
 
-For the frames that the examples with engines write. It needs matplotlib.
+For the frames that the examples with engines write: triangles only. All are drawn in the frame
+of the last one. It needs matplotlib.
 """
 
 import sys

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Bodies of the examples in an OBJ file, which draw_meshes.py draws.
+// Bodies of the examples in an OBJ file, which draw_meshes.py draws. Coordinates have six
+// digits after the point: they are for a picture.
 #ifndef OBJ_FILE_H
 #define OBJ_FILE_H
 
 #include <cstddef>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 

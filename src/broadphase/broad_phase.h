@@ -241,7 +241,7 @@ class BroadPhase {
   MovingBoxTree tree_[2];
   std::uint64_t next_serial_{0};
 
-  /// The pairs of objects that rest, at the distance 0, except those of stale slots.
+  /// The pairs of objects that rest, within their margins, except those of stale slots.
   mutable std::mutex resting_mutex_;
   mutable std::vector<Found> resting_;
   mutable std::vector<SlotNumber> stale_;

@@ -232,6 +232,7 @@ DemoFrame ClothOverBall::advanceFrame() {
         std::all_of(c.vertices.begin(), c.vertices.begin() + c.numVertices(),
                     [&](int v) { return bodyOf(static_cast<std::size_t>(v)) == kCloth; });
   }
+  frame.number = this->frame();
   frame.total_seconds = secondsNow() - begin;
   return frame;
 }

@@ -19,6 +19,7 @@ namespace test {
 /// @brief What happened in a frame. Its contacts are those of the motions that the steps
 /// proposed, before anything answered them.
 struct DemoFrame {
+  int number{0};  // from 1
   /// each pair of features once
   std::vector<ContinuousContact<double>> contacts;
   std::size_t vertex_face{0};

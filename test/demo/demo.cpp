@@ -202,9 +202,9 @@ class Files {
 /// A cloth that ends on the wrong side of anything means that a contact was missed. Each
 /// step looks for crossings at its beginning; the last state is looked at here.
 void requireNoCrossing(ClothOverBall& scene, const Run& run) {
-  for (std::size_t i = 0; i < run.frames.size(); ++i)
-    if (run.frames[i].crossing || run.frames[i].unresolved > 0)
-      throw std::runtime_error("surfaces cross in frame " + std::to_string(i + 1));
+  for (const DemoFrame& frame : run.frames)
+    if (frame.crossing || frame.unresolved > 0)
+      throw std::runtime_error("surfaces cross in frame " + std::to_string(frame.number));
   if (scene.hasCrossing()) throw std::runtime_error("surfaces cross at the end");
 }
 

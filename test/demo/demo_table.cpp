@@ -88,9 +88,9 @@ std::string formatTable(const std::vector<DemoFrame>& frames) {
         << 1000 * r.total_seconds;
     writeCounts(out, r.counts);
   };
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    out << std::setw(5) << i + 1;
-    writeRow(frames[i]);
+  for (const DemoFrame& frame : frames) {
+    out << std::setw(5) << frame.number;
+    writeRow(frame);
   }
   out << "  all";
   writeRow(sumOf(frames));
@@ -104,10 +104,9 @@ std::string formatCsv(const std::vector<DemoFrame>& frames) {
          "response_ms,total_ms,in_zones,stopped,node_pairs,triangle_pairs,"
          "adjacent_pairs,fan_culled,plane_culled,feature_pairs,box_culled,filter_culled,"
          "solver_culled,exact_culled,exact_tests,contacts,crossing_tests\n";
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const DemoFrame& r = frames[i];
+  for (const DemoFrame& r : frames) {
     const StageCounts& c = r.counts;
-    out << i + 1 << ',' << r.vertex_face << ',' << r.edge_edge << ',' << r.self << ','
+    out << r.number << ',' << r.vertex_face << ',' << r.edge_edge << ',' << r.self << ','
         << r.first_contact << ',' << 1000 * r.query_seconds << ',' << r.queries << ','
         << 1000 * r.response_seconds << ',' << 1000 * r.total_seconds << ',' << r.in_zones
         << ',' << r.stopped << ',' << c.node_pairs << ',' << c.triangle_pairs << ','

@@ -6,6 +6,7 @@
 
 #include <limits>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "fcl/broadphase/collision_robot.h"
@@ -142,6 +143,91 @@ TEST(FCL_MANAGER_STEPS, objectsThatRestedAndMove) {
   EXPECT_EQ(scene.ask().num_box_pairs, 0u);
 }
 
+/// Balls that overlap in a row.
+std::vector<std::unique_ptr<Object>> overlappingBalls(int count) {
+  const auto ball = std::make_shared<Sphere<double>>(1);
+  std::vector<std::unique_ptr<Object>> balls;
+  for (int i = 0; i < count; ++i)
+    balls.push_back(makeObject(ball, translation(V(i, 0, 0), V(i, .1, 0))));
+  return balls;
+}
+
+TEST(FCL_MANAGER_STEPS, firstContactAtBeginEndsTheQuery) {
+  Manager manager;
+  const auto balls = overlappingBalls(50);
+  for (const auto& ball : balls) manager.registerObject(ball.get());
+  Request request;
+  request.query = ContinuousQuery::kFirst;
+  Result result;
+  manager.collide(request, result);
+  EXPECT_GT(result.num_box_pairs, 90u);
+  EXPECT_EQ(result.num_tested, 1u);
+  ASSERT_EQ(result.pairs.size(), 1u);
+  EXPECT_EQ(result.pairs[0].o1, balls[0].get());
+}
+
+TEST(FCL_MANAGER_STEPS, errorOfTheFirstPairWithAnyThreads) {
+  Manager manager;
+  const auto balls = overlappingBalls(40);
+  for (const auto& ball : balls) manager.registerObject(ball.get());
+  Request request;
+  request.min_approach_speed = 1;  // not for shapes
+  for (const auto query :
+       {ContinuousQuery::kAll, ContinuousQuery::kFirst, ContinuousQuery::kAny})
+    for (const int threads : {1, 3}) {
+      request.query = query;
+      request.num_threads = threads;
+      Result result;
+      result.num_box_pairs = 7;
+      std::string message;
+      try {
+        manager.collide(request, result);
+      } catch (const Exception& error) {
+        message = error.what();
+      }
+      EXPECT_EQ(message.rfind("o1 is object 0, o2 is object 1: ", 0), 0u) << message;
+      EXPECT_EQ(result.num_box_pairs, 7u);
+    }
+}
+
+/// A motion of the program of which nothing is known but its poses.
+class OwnMotion : public TranslationMotion<double> {
+ public:
+  using TranslationMotion<double>::TranslationMotion;
+};
+
+TEST(FCL_MANAGER_STEPS, threadsShareAMotionOfTheProgram) {
+  Manager manager;
+  const TestMesh sheet = makeSheet(8, 8);
+  TestMesh bent = sheet;
+  for (V& p : bent.vertices) p.z() += .1 * p.x();
+  const auto cloth = makeModel<DeformableBVHModel<>>(sheet, bent);
+  const auto object = makeObject(
+      cloth, fcl::make_aligned_shared<OwnMotion>(Pose(Translation3<double>(0, 0, 1)),
+                                                 Pose(Translation3<double>(0, 0, -1))));
+  manager.registerObject(object.get());
+  Random random(73);
+  const auto ball = std::make_shared<Sphere<double>>(.1);
+  std::vector<std::unique_ptr<Object>> balls;
+  for (int i = 0; i < 60; ++i) {
+    const V place = V(.5, .5, 0) + random.point(.5);
+    balls.push_back(makeObject(ball, translation(place, place)));
+    manager.registerObject(balls.back().get());
+  }
+  Request request;
+  Result one;
+  manager.collide(request, one);
+  EXPECT_GT(one.pairs.size(), 50u);
+  request.num_threads = 3;
+  for (int i = 0; i < 20; ++i) {
+    Result result;
+    manager.collide(request, result);
+    ASSERT_EQ(result.pairs.size(), one.pairs.size());
+    for (std::size_t k = 0; k < one.pairs.size(); ++k)
+      expectIdentical(result.pairs[k].result, one.pairs[k].result);
+  }
+}
+
 TEST(FCL_MANAGER_STEPS, errorsChangeNothing) {
   TwoBalls scene;
   Manager& manager = scene.manager;
@@ -247,12 +333,56 @@ TEST(FCL_MANAGER_STEPS, obstaclesOfARobotHaveAThickness) {
   const auto post = makeObject(std::make_shared<Sphere<double>>(.1),
                                translation(V(0, 1.3, 0), V(0, 1.3, 0)));
   obstacles.registerObject(post.get());
+  Request request;
   RobotEdgeResult<double> result;
-  EXPECT_TRUE(robot.checkEdge({0}, {2}, &obstacles, Request(), result));
+  EXPECT_TRUE(robot.checkEdge({0}, {2}, &obstacles, request, result));
   obstacles.setThickness(post.get(), .2);
-  EXPECT_FALSE(robot.checkEdge({0}, {2}, &obstacles, Request(), result));
+  EXPECT_FALSE(robot.checkEdge({0}, {2}, &obstacles, request, result));
   obstacles.setThickness(post.get(), .05);
-  EXPECT_TRUE(robot.checkEdge({0}, {2}, &obstacles, Request(), result));
+  EXPECT_TRUE(robot.checkEdge({0}, {2}, &obstacles, request, result));
+}
+
+TEST(FCL_MANAGER_STEPS, aRobotWithAnyThreads) {
+  Random random(74);
+  JointChain chain;
+  for (int i = 0; i < 5; ++i)
+    chain.addRevolute(Pose(Translation3<double>(i > 0 ? .4 : 0, 0, 0)),
+                      random.point(1).normalized());
+  CollisionRobot<double> robot(chain);
+  robot.allowNeighbours();
+  for (int i = 0; i < 5; ++i)
+    robot.attach(i, std::make_shared<Sphere<double>>(.15),
+                 Pose(Translation3<double>(.2, 0, 0)));
+  Manager obstacles;
+  std::vector<std::unique_ptr<Object>> balls;
+  for (int i = 0; i < 80; ++i) {
+    const V place = random.point(1.5);
+    balls.push_back(
+        makeObject(std::make_shared<Sphere<double>>(.1), translation(place, place)));
+    obstacles.registerObject(balls.back().get());
+  }
+  int contacts = 0;
+  for (int i = 0; i < 20; ++i)
+    for (const auto query :
+         {ContinuousQuery::kAll, ContinuousQuery::kFirst, ContinuousQuery::kAny}) {
+      std::vector<double> from, to;
+      for (int k = 0; k < 5; ++k) {
+        from.push_back(random.uniform(-2, 2));
+        to.push_back(from.back() + random.uniform(-1, 1));
+      }
+      Request request;
+      request.query = query;
+      RobotEdgeResult<double> one, result;
+      robot.checkEdge(from, to, &obstacles, request, one);
+      request.num_threads = 3;
+      robot.checkEdge(from, to, &obstacles, request, result);
+      EXPECT_EQ(result.joint_values, one.joint_values);
+      ASSERT_EQ(result.pairs.size(), one.pairs.size());
+      for (std::size_t k = 0; k < one.pairs.size(); ++k)
+        expectIdentical(result.pairs[k].result, one.pairs[k].result);
+      contacts += static_cast<int>(one.pairs.size());
+    }
+  EXPECT_GT(contacts, 20);
 }
 
 }  // namespace

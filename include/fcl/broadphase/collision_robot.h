@@ -135,11 +135,11 @@ class CollisionRobot {
   /// @brief Checks the edge from one joint state to another: all values change at
   /// constant speed.
   /// @param begin, end  the value of each joint that moves
-  /// @param obstacles  the objects of a manager; null: the robot alone. They may move
-  /// during the step.
-  /// @param request  as ContinuousCollisionManager::collide() takes it. `query` should be
-  /// kAny (is it free?) or kFirst (how far is it free?): the default is kAll. filter1 and
-  /// filter2 do not act.
+  /// @param obstacles  the objects of a manager, with their thickness; null: the robot
+  /// alone. They may move during the step.
+  /// @param request  as ContinuousCollisionManager::collide() takes it, num_threads too.
+  /// `query` should be kAny (is it free?) or kFirst (how far is it free?): the default is
+  /// kAll. filter1 and filter2 do not act.
   /// @return result.is_free
   /// @throws fcl::Exception  as ChainMotion, and what continuousCollide() throws, with
   /// the names of both bodies

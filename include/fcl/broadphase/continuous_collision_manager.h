@@ -131,8 +131,8 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   /// @brief Reads these objects again, for example those that moved.
   void update(const std::vector<Object*>& objects) override;
 
-  /// @brief Gives an object a new motion, and reads the object. If it was part of a
-  /// motion before, the old one is released.
+  /// @brief Gives an object a new motion, and reads the object. The object releases its
+  /// old motion.
   void setMotion(Object* object, const std::shared_ptr<MotionBase<S>>& motion);
   /// @brief The same for many objects, one motion each.
   void setMotion(const std::vector<Object*>& objects,
@@ -145,7 +145,8 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
                  const Transform3<S>& tf_end);
   /// @brief The next step of an object: the motion from where its motion ends to a pose.
   void step(Object* object, const Transform3<S>& tf_end);
-  /// @brief The same for many objects, one pose each.
+  /// @brief The same for many objects, one pose each. Of an object that comes twice the
+  /// last pose counts.
   void step(const std::vector<Object*>& objects,
             const std::vector<Transform3<S>>& tf_end);
 
@@ -158,7 +159,8 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   /// callbacks for contacts. distance() is that of the geometries.
   void setThickness(Object* object, S thickness);
   /// @brief Sets the distance of two objects of this manager, in place of the sum of
-  /// their thicknesses. Not between objects of two managers.
+  /// their thicknesses. Not between objects of two managers. The boxes of both grow by
+  /// half of it or more, so a large one makes more pairs of them with others too.
   void setPairDistance(Object* o1, Object* o2, S distance);
   /// @brief Takes back setPairDistance().
   void resetPairDistance(Object* o1, Object* o2);
@@ -181,11 +183,12 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
 
   /// @brief First contact, any contact, or all contacts of all objects: request.query.
   ///
-  /// kFirst: pairs are tested in the order of their windows, up to the best time so far.
+  /// kFirst: pairs are tested in the order of their windows, up to the best time so far,
+  /// or until two touch at t = 0.
   /// All fields of the request act as in continuousCollide() of a pair, with these
   /// differences: filter1 and filter2 are those of setFilter(); num_max_contacts is per
-  /// pair. With min_distance above 0 pairs of two objects that rest are searched anew in
-  /// each query.
+  /// pair. With the request's min_distance above 0 pairs of two objects that rest are
+  /// searched anew in each query; a thickness does not do that.
   /// @throws fcl::Exception  what continuousCollide() throws, with the numbers of the
   /// objects in getObjects()
   void collide(const ContinuousContactRequest<S>& request,
@@ -287,7 +290,7 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   S distanceOf(const Object* o1, const ContinuousCollisionManager& other,
                const Object* o2) const;
   void requireRegistered(const Object* object, const char* query) const;
-  void setMargin(Object* object);
+  void setMargin(const void* object);
   bool test(const detail::BroadPhasePair& pair, const ContinuousCollisionManager& other,
             Request& request, PairResult& tested) const;
   void answer(const Pairs& pairs, const ContinuousCollisionManager& other,
@@ -345,7 +348,7 @@ template <typename S>
 void ContinuousCollisionManager<S>::unregisterObject(Object* object) {
   boxes_.remove(object);
   filters_.erase(object);
-  distances_.forget(object);
+  for (const void* other : distances_.forget(object)) setMargin(other);
   swept_objects_.erase(object);
 }
 
@@ -412,13 +415,15 @@ template <typename S>
 void ContinuousCollisionManager<S>::step(const std::vector<Object*>& objects,
                                          const std::vector<Transform3<S>>& tf_end) {
   detail::requireOneEach(objects.size(), tf_end.size(), "pose");
+  for (const Object* object : objects) {
+    detail::requireUsable(object);
+    requireRegistered(object, "step");
+  }
   std::vector<std::shared_ptr<MotionBase<S>>> motions;
   motions.reserve(objects.size());
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    detail::requireUsable(objects[i]);
+  for (std::size_t i = 0; i < objects.size(); ++i)
     motions.push_back(
         detail::makeMotionBetween<S>(detail::lastPoseOf(*objects[i]), tf_end[i]));
-  }
   setMotion(objects, motions);
 }
 
@@ -438,7 +443,7 @@ void ContinuousCollisionManager<S>::requireRegistered(const Object* object,
 
 /// The box of an object, and with it the pairs that queries find, have its margin.
 template <typename S>
-void ContinuousCollisionManager<S>::setMargin(Object* object) {
+void ContinuousCollisionManager<S>::setMargin(const void* object) {
   boxes_.setMargin(object, static_cast<double>(distances_.marginOf(object)));
 }
 

@@ -6,12 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <iterator>
-#include <map>
 #include <string>
 #include <unordered_map>
-#include <utility>
+#include <vector>
 
 #include "fcl/common/exception.h"
 
@@ -31,7 +28,7 @@ void requireThickness(S distance, const char* name) {
 template <typename S>
 class ObjectDistances {
  public:
-  bool empty() const { return thickness_.empty() && pairs_.empty(); }
+  bool empty() const { return thickness_.empty() && pairs_of_.empty(); }
 
   void setThickness(const void* object, S thickness) {
     if (thickness > 0)
@@ -45,46 +42,62 @@ class ObjectDistances {
   }
 
   void setPair(const void* o1, const void* o2, S distance) {
-    pairs_[inOrder(o1, o2)] = distance;
+    pairs_of_[o1][o2] = distance;
+    pairs_of_[o2][o1] = distance;
   }
-  void forgetPair(const void* o1, const void* o2) { pairs_.erase(inOrder(o1, o2)); }
+  void forgetPair(const void* o1, const void* o2) {
+    forgetSide(o1, o2);
+    forgetSide(o2, o1);
+  }
 
-  void forget(const void* object) {
+  /// @return the objects that had a distance of their own from this one
+  std::vector<const void*> forget(const void* object) {
+    std::vector<const void*> others;
     thickness_.erase(object);
-    for (auto it = pairs_.begin(); it != pairs_.end();)
-      it = it->first.first == object || it->first.second == object ? pairs_.erase(it)
-                                                                   : std::next(it);
+    const auto entry = pairs_of_.find(object);
+    if (entry == pairs_of_.end()) return others;
+    for (const auto& pair : entry->second)
+      if (pair.first != object) others.push_back(pair.first);
+    pairs_of_.erase(entry);
+    for (const void* other : others) forgetSide(other, object);
+    return others;
   }
   void clear() {
     thickness_.clear();
-    pairs_.clear();
+    pairs_of_.clear();
   }
 
   /// What is added to the distance of a query for two objects.
   S of(const void* o1, const void* o2) const {
-    const auto entry = pairs_.empty() ? pairs_.end() : pairs_.find(inOrder(o1, o2));
-    return entry == pairs_.end() ? thicknessOf(o1) + thicknessOf(o2) : entry->second;
+    const auto pairs = pairs_of_.find(o1);
+    if (pairs != pairs_of_.end()) {
+      const auto pair = pairs->second.find(o2);
+      if (pair != pairs->second.end()) return pair->second;
+    }
+    return thicknessOf(o1) + thicknessOf(o2);
   }
 
   /// A margin for the box of an object: the margins of two objects add up to of() or
   /// more.
   S marginOf(const void* object) const {
     S margin = thicknessOf(object);
-    for (const auto& pair : pairs_)
-      if (pair.first.first == object || pair.first.second == object)
-        margin = std::max(margin, pair.second / 2);
+    const auto pairs = pairs_of_.find(object);
+    if (pairs != pairs_of_.end())
+      for (const auto& pair : pairs->second) margin = std::max(margin, pair.second / 2);
     return margin;
   }
 
  private:
-  using ObjectPair = std::pair<const void*, const void*>;
-
-  static ObjectPair inOrder(const void* o1, const void* o2) {
-    return std::less<const void*>()(o2, o1) ? ObjectPair(o2, o1) : ObjectPair(o1, o2);
+  void forgetSide(const void* object, const void* other) {
+    const auto pairs = pairs_of_.find(object);
+    if (pairs == pairs_of_.end()) return;
+    pairs->second.erase(other);
+    if (pairs->second.empty()) pairs_of_.erase(pairs);
   }
 
   std::unordered_map<const void*, S> thickness_;
-  std::map<ObjectPair, S> pairs_;
+  /// Each pair is in the lists of both objects.
+  std::unordered_map<const void*, std::unordered_map<const void*, S>> pairs_of_;
 };
 
 }  // namespace detail

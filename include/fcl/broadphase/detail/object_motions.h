@@ -96,7 +96,8 @@ std::shared_ptr<MotionBase<S>> makeMotionBetween(const Transform3<S>& beg,
   return detail::makeTurn(beg, end);
 }
 
-/// @brief The pose of an object at t = 1.
+/// @brief The pose of an object at t = 1. A motion class of the program is at its
+/// beginning afterwards.
 template <typename S>
 Transform3<S> lastPoseOf(const ContinuousCollisionObject<S>& object) {
   const MovingGeometry<S> moving = detail::readObject<S>(&object);
@@ -105,6 +106,7 @@ Transform3<S> lastPoseOf(const ContinuousCollisionObject<S>& object) {
   Transform3<S> tf = Transform3<S>::Identity();
   object.getMotion()->integrate(S(1));
   object.getMotion()->getCurrentTransform(tf);
+  object.getMotion()->integrate(S(0));
   return tf;
 }
 

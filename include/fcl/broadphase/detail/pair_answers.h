@@ -36,8 +36,8 @@ void sortByTime(std::vector<Answer>& pairs) {
 }
 
 /// @brief Calls visit(0) ... visit(count - 1), each once, in up to num_threads threads
-/// (0: as many as the oneTBB task arena around the call has).
-/// @pre visit does not throw
+/// (0: as many as the oneTBB task arena around the call has). If calls throw, the
+/// exception of the lowest number is thrown at the end.
 FCL_EXPORT void visitInThreads(std::size_t count, int num_threads,
                                const std::function<void(std::size_t)>& visit);
 
@@ -61,12 +61,13 @@ class PairTests {
   PairTests(const std::vector<Pair>& pairs, const Request& request, const Test& test)
       : pairs_(pairs),
         test_(test),
-        num_threads_(request.accepts_triangles ? 1 : request.num_threads) {}
+        num_threads_(request.accepts_triangles ? 1 : request.num_threads),
+        most_in_block_(request.query == ContinuousQuery::kAll ? 1024 : 64) {}
 
   /// The pairs of the next block: one, if there are no threads.
   std::size_t nextBlock(std::size_t first) {
     const std::size_t count = std::min(block_, pairs_.size() - first);
-    if (num_threads_ != 1) block_ = std::min<std::size_t>(2 * block_, kMostInBlock);
+    if (num_threads_ != 1) block_ = std::min(2 * block_, most_in_block_);
     return count;
   }
 
@@ -95,11 +96,11 @@ class PairTests {
     }
   }
 
-  static constexpr std::size_t kMostInBlock = 1024;
-
   const std::vector<Pair>& pairs_;
   const Test& test_;
   const int num_threads_;
+  /// So many are tested in vain where one pair ends the query.
+  const std::size_t most_in_block_;
   std::size_t block_{1};
   std::vector<Tested> block_tested_;
 };
@@ -111,6 +112,28 @@ struct PairAnswers {
   std::size_t num_tested{0};
 };
 
+/// @brief A pair in contact, in a query for the first one.
+template <typename Answer>
+struct PairInContact {
+  std::size_t pair;
+  /// Whether it was tested up to an earlier time than the request's t_max.
+  bool is_cut;
+  Answer tested;
+};
+
+/// @brief Tests a pair again up to the request's t_max, if it was not.
+/// @return whether it is in contact at t = 0: no other pair is earlier
+template <typename Answer, typename S, typename Pair, typename Test>
+bool isAtBegin(const Pair& pair, const ContinuousContactRequest<S>& asked,
+               const Test& test, PairInContact<Answer>& contact) {
+  if (contact.is_cut) {
+    ContinuousContactRequest<S> whole = asked;
+    test(pair, whole, contact.tested);
+    contact.is_cut = false;
+  }
+  return contact.tested.result.time_of_contact <= 0;
+}
+
 /// The bracket of a contact may depend on t_max, by up to toc_err. So if the times of two
 /// pairs differ by less, their order may depend on it too. Therefore pairs are tested up
 /// to 2 toc_err after the best time. At the end those in this range are tested again, up
@@ -121,12 +144,7 @@ template <typename Answer, typename S, typename Pair, typename Test>
 PairAnswers<Answer> firstAnswer(const std::vector<Pair>& pairs,
                                 const ContinuousContactRequest<S>& asked,
                                 const Test& test) {
-  struct InContact {
-    std::size_t pair;
-    bool is_cut;
-    Answer tested;
-  };
-  std::vector<InContact> found;
+  std::vector<PairInContact<Answer>> found;
   ContinuousContactRequest<S> request = asked;
   const S range =
       2 * std::max(asked.toc_err, S(0)) + 64 * std::numeric_limits<S>::epsilon();
@@ -149,8 +167,8 @@ PairAnswers<Answer> firstAnswer(const std::vector<Pair>& pairs,
       // Another pair of the block made t_max earlier.
       if (time > request.t_max) continue;
       found.push_back({first + i, is_cut, std::move(block[i].answer)});
+      is_done = time <= 0 && isAtBegin(pair, asked, test, found.back());
       request.t_max = std::min(request.t_max, time + range);
-      is_done = time <= 0;
     }
     first += count;
     if (first < pairs.size() && pairs[first].t_lo > static_cast<double>(request.t_max))
@@ -158,7 +176,7 @@ PairAnswers<Answer> firstAnswer(const std::vector<Pair>& pairs,
   }
   const S latest = request.t_max;
   request.t_max = asked.t_max;
-  for (InContact& contact : found) {
+  for (PairInContact<Answer>& contact : found) {
     if (contact.tested.result.time_of_contact > latest) continue;
     if (contact.is_cut) test(pairs[contact.pair], request, contact.tested);
     if (out.pairs.empty())

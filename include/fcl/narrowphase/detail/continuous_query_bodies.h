@@ -11,6 +11,7 @@
 
 #include <cassert>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "fcl/common/exception.h"
@@ -158,12 +159,16 @@ MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
   moving.path = PathKind::kUnknown;
   const OBJECT_TYPE type = other->getObjectType();
   if ((type == OT_BVH || type == OT_GEOM || type == OT_OCTREE) &&
-      detail::isDeformingMesh(*o))
+      detail::isDeformingMesh(*o)) {
+    // Queries of several pairs at the same time may share the motion.
+    static std::mutex mutex;
+    const std::lock_guard<std::mutex> lock(mutex);
     for (int end = 1; end >= 0; --end) {
       motion->integrate(S(end));
       motion->getCurrentTransform(tf);
       moving.pose[end] = detail::toNumbers(tf);
     }
+  }
   return moving;
 }
 
