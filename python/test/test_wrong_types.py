@@ -38,7 +38,10 @@ CALLS = {
     "CollisionManager.distance": (MANAGER, BALL, EYE),
     "CollisionManager.register": (fcl_ccd.CollisionManager(), "mesh", MESH),
     "CollisionManager.set_filter": (MANAGER, "ball", None),
+    "CollisionManager.set_pair_distance": (MANAGER, "ball", "ball", 0),
     "CollisionManager.set_self_collision": (MANAGER, "ball", False),
+    "CollisionManager.set_thickness": (MANAGER, "ball", 0),
+    "CollisionManager.step": (MANAGER, {"ball": EYE}),
     "CollisionManager.unregister": (fcl_ccd.CollisionManager(), "ball"),
     "CollisionManager.update": (MANAGER,),
     "CollisionRobot": (CHAIN,),
@@ -134,7 +137,7 @@ def wrong_values(annotation):
 def wrong_arguments():
     for name, function in public_calls():
         for argument, parameter in inspect.signature(function).parameters.items():
-            if argument not in ("self", "name") and function is not FRAMES:
+            if argument not in ("self", "name", "name1", "name2") and function is not FRAMES:
                 for value in wrong_values(parameter.annotation):
                     yield pytest.param(name, function, argument, value, id=f"{name}-{argument}")
 

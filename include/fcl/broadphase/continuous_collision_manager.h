@@ -289,7 +289,7 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   std::string nameOf(const Object* object) const;
   S distanceOf(const Object* o1, const ContinuousCollisionManager& other,
                const Object* o2) const;
-  void requireRegistered(const Object* object, const char* query) const;
+  void requireRegistered(const Object* object) const;
   void setMargin(const void* object);
   bool test(const detail::BroadPhasePair& pair, const ContinuousCollisionManager& other,
             Request& request, PairResult& tested) const;
@@ -417,7 +417,7 @@ void ContinuousCollisionManager<S>::step(const std::vector<Object*>& objects,
   detail::requireOneEach(objects.size(), tf_end.size(), "pose");
   for (const Object* object : objects) {
     detail::requireUsable(object);
-    requireRegistered(object, "step");
+    requireRegistered(object);
   }
   std::vector<std::shared_ptr<MotionBase<S>>> motions;
   motions.reserve(objects.size());
@@ -433,12 +433,11 @@ void ContinuousCollisionManager<S>::step(Object* object, const Transform3<S>& tf
 }
 
 template <typename S>
-void ContinuousCollisionManager<S>::requireRegistered(const Object* object,
-                                                      const char* query) const {
-  if (!object || !boxes_.contains(object))
-    throw Exception(std::string(query) +
-                    ": the object is not registered in this manager. Call "
-                    "registerObject() first");
+void ContinuousCollisionManager<S>::requireRegistered(const Object* object) const {
+  detail::requireNotNull(object, "object");
+  if (!boxes_.contains(object))
+    throw Exception(
+        "the object is not registered in this manager. Call registerObject() first");
 }
 
 /// The box of an object, and with it the pairs that queries find, have its margin.
@@ -449,7 +448,7 @@ void ContinuousCollisionManager<S>::setMargin(const void* object) {
 
 template <typename S>
 void ContinuousCollisionManager<S>::setThickness(Object* object, S thickness) {
-  requireRegistered(object, "setThickness");
+  requireRegistered(object);
   detail::requireThickness(thickness, "the thickness");
   distances_.setThickness(object, thickness);
   setMargin(object);
@@ -457,8 +456,8 @@ void ContinuousCollisionManager<S>::setThickness(Object* object, S thickness) {
 
 template <typename S>
 void ContinuousCollisionManager<S>::setPairDistance(Object* o1, Object* o2, S distance) {
-  requireRegistered(o1, "setPairDistance");
-  requireRegistered(o2, "setPairDistance");
+  requireRegistered(o1);
+  requireRegistered(o2);
   detail::requireThickness(distance, "the distance");
   distances_.setPair(o1, o2, distance);
   setMargin(o1);
@@ -467,8 +466,8 @@ void ContinuousCollisionManager<S>::setPairDistance(Object* o1, Object* o2, S di
 
 template <typename S>
 void ContinuousCollisionManager<S>::resetPairDistance(Object* o1, Object* o2) {
-  requireRegistered(o1, "resetPairDistance");
-  requireRegistered(o2, "resetPairDistance");
+  requireRegistered(o1);
+  requireRegistered(o2);
   distances_.forgetPair(o1, o2);
   setMargin(o1);
   setMargin(o2);
