@@ -69,22 +69,22 @@ class MotionExchange {
   bool is_swapped_{false}, is_kept_{false};
 };
 
-/// FCL's motions in double turn about one axis at a constant rate, their origin goes
-/// straight.
+/// In float FCL's motions that turn are abstract. A template, so that only a program that
+/// calls it needs TwistMotion, which -fno-rtti does not allow.
+template <typename S>
+std::shared_ptr<MotionBase<S>> makeTurn(const Transform3<S>& beg,
+                                        const Transform3<S>& end) {
+  const Matrix3<S> turn = end.linear() * beg.linear().transpose();
+  const AngleAxis<S> about(turn);
+  const Vector3<S> way = end.translation() - beg.translation(),
+                   angular = about.angle() * about.axis();
+  return std::make_shared<TwistMotion<S>>(beg, way, angular, ReferencePath::kStraight);
+}
+
+/// FCL's motion turns about one axis at a constant rate, and its origin goes straight.
 inline std::shared_ptr<MotionBase<double>> makeTurn(const Transform3<double>& beg,
                                                     const Transform3<double>& end) {
   return detail::makeFclMotion<double>(beg, end, CCDM_LINEAR);
-}
-
-/// In float they are abstract.
-inline std::shared_ptr<MotionBase<float>> makeTurn(const Transform3<float>& beg,
-                                                   const Transform3<float>& end) {
-  const Matrix3<float> turn = end.linear() * beg.linear().transpose();
-  const AngleAxis<float> about(turn);
-  const Vector3<float> way = end.translation() - beg.translation(),
-                       angular = about.angle() * about.axis();
-  return std::make_shared<TwistMotion<float>>(beg, way, angular,
-                                              ReferencePath::kStraight);
 }
 
 /// @brief The motion from one pose to another.
