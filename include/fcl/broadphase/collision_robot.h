@@ -387,19 +387,14 @@ bool CollisionRobot<S>::checkPath(const detail::ChainPathPtr& path,
   result.num_box_pairs = pairs.size();
   const bool has_distances = obstacles && !obstacles->distances_.empty();
   Request common = request;
-  // An obstacle may have a thickness where the request has no distance.
-  if (has_distances && !(request.min_distance > 0))
-    common.ignore_initially_closer = false;
+  if (has_distances) detail::addDistance(request, S(0), common);
   auto answers = detail::answersOf<PairResult>(
       pairs, common,
       [&](const detail::RobotPair& pair, Request& asked, PairResult& tested) {
-        if (has_distances) {
-          asked.min_distance = request.min_distance;
-          if (pair.object)
-            asked.min_distance += obstacles->distances_.thicknessOf(pair.object);
-          asked.ignore_initially_closer =
-              request.ignore_initially_closer && asked.min_distance > 0;
-        }
+        if (has_distances)
+          detail::addDistance(
+              request,
+              pair.object ? obstacles->distances_.thicknessOf(pair.object) : S(0), asked);
         return test(step, pair, obstacles, asked, tested);
       });
   result.num_tested = answers.num_tested;

@@ -596,18 +596,13 @@ void ContinuousCollisionManager<S>::answer(const Pairs& pairs,
   const bool has_distances =
       with_thickness && (!distances_.empty() || !other.distances_.empty());
   Request common = request;
-  // A pair may have a distance where the request has none.
-  if (has_distances && !(request.min_distance > 0))
-    common.ignore_initially_closer = false;
+  if (has_distances) detail::addDistance(request, S(0), common);
   auto answers = detail::answersOf<PairResult>(
       pairs, common,
       [&](const detail::BroadPhasePair& pair, Request& asked, PairResult& tested) {
-        if (has_distances) {
-          asked.min_distance = request.min_distance +
-                               distanceOf(objectOf(pair.o1), other, objectOf(pair.o2));
-          asked.ignore_initially_closer =
-              request.ignore_initially_closer && asked.min_distance > 0;
-        }
+        if (has_distances)
+          detail::addDistance(
+              request, distanceOf(objectOf(pair.o1), other, objectOf(pair.o2)), asked);
         return test(pair, other, asked, tested);
       });
   Result result;

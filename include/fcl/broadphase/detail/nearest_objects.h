@@ -100,10 +100,6 @@ struct DefaultContinuousDistanceData {
 /// @throws fcl::Exception  as continuousDistance()
 template <typename S>
 bool DefaultContinuousDistanceFunction(CollisionObject<S>* o1, CollisionObject<S>* o2,
-                                       void* cdata, S& dist);
-
-template <typename S>
-bool DefaultContinuousDistanceFunction(CollisionObject<S>* o1, CollisionObject<S>* o2,
                                        void* cdata, S& dist) {
   auto& data = *static_cast<DefaultContinuousDistanceData<S>*>(cdata);
   if (data.done) return true;

@@ -105,6 +105,16 @@ class PairTests {
   std::vector<Tested> block_tested_;
 };
 
+/// @brief Sets the distance of a pair: that of the request, and what its objects add.
+/// Without any distance no pair begins nearer than it.
+template <typename S>
+void addDistance(const ContinuousContactRequest<S>& request, S added,
+                 ContinuousContactRequest<S>& asked) {
+  asked.min_distance = request.min_distance + added;
+  asked.ignore_initially_closer =
+      request.ignore_initially_closer && asked.min_distance > 0;
+}
+
 /// @brief Pairs in contact, and how many were tested.
 template <typename Answer>
 struct PairAnswers {
