@@ -11,7 +11,10 @@
 
 #include "fcl/broadphase/collision_robot.h"
 #include "fcl/broadphase/continuous_collision_manager.h"
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/geometry/shape/sphere.h"
+#include "fcl/math/bv/OBBRSS.h"
+#include "fcl/math/motion/joint_chain.h"
 #include "fcl/math/motion/twist_motion.h"
 #include "moving_objects.h"
 #include "test_models.h"
