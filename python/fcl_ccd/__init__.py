@@ -24,7 +24,8 @@ cells: OcTree. Bodies of several of these: Compound. Motions: a pose, two poses,
 LinearMotion, ScrewMotion, TwistMotion, SplineMotion, WaypointMotion, the links of a robot (JointChain, ChainMotion), and your own as
 a BoundedMotion. Queries: collide(), self_collide(), which take a Filter and give a Result.
 How near two objects come: distance(), which gives a DistanceResult. Many objects:
-CollisionManager. Edges of a planner: CollisionRobot. With min_distance features are in
+CollisionManager, and PersistentPairs for what has changed since the last step. Edges of a
+planner: CollisionRobot. With min_distance features are in
 contact at a distance. For your own solver: candidates(), self_candidates(); vertex_face(),
 edge_edge(), vertex_edge() and vertex_vertex() on arrays.
 
@@ -52,9 +53,11 @@ from ._motions import (
     WaypointMotion,
 )
 from ._octrees import OcTree, octree_cell_dtype
+from ._persistent import PersistentPair, PersistentPairs
 from ._queries import (
     DistanceResult,
     Filter,
+    Groups,
     candidate_dtype,
     candidates,
     collide,
@@ -98,6 +101,7 @@ __all__ = [
     "EdgeResult",
     "Ellipsoid",
     "Filter",
+    "Groups",
     "Halfspace",
     "JointChain",
     "Kind",
@@ -108,6 +112,8 @@ __all__ = [
     "NearestPair",
     "OcTree",
     "Pair",
+    "PersistentPair",
+    "PersistentPairs",
     "Plane",
     "Result",
     "RigidMesh",

@@ -257,6 +257,17 @@ class CollisionManager(_arguments.Built):
             distance = _arguments.number(distance, "distance")
         self._manager._set_pair_distance(self._object(name1), self._object(name2), distance)
 
+    def set_min_approach_speed(self, name: Hashable, speed: float) -> None:
+        """Set how fast others must approach an object to be in contact with it, at least 0.
+
+        As collide()'s min_approach_speed, for the pairs of this object; of two objects the
+        larger speed counts. It acts on pairs of meshes on straight paths. Of other pairs all
+        contacts count.
+        """
+        self._manager._set_min_approach_speed(
+            self._object(name), _arguments.number(speed, "speed")
+        )
+
     def set_filter(self, name: Hashable, filter: Optional[Filter]) -> None:
         """Replace the filter of an object: which others it can be in contact with. None: all."""
         self._manager._set_filter(self._object(name), filter_of(filter, "filter"))

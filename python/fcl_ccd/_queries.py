@@ -65,6 +65,47 @@ class Filter(Copied, _core.Filter):
         return self.group, self.mask, self._triangle_groups, self._triangle_masks
 
 
+_NUM_GROUPS = 32
+
+
+class Groups(_arguments.Built):
+    """Which groups of objects can be in contact, as a table of pairs of groups.
+
+    A group is a number from 0 to 31. All can be in contact at first. The table makes the filters
+    of objects: after a change of it make them anew.
+
+        groups = fcl_ccd.Groups()
+        groups.set(1, 1, False)                         # objects of group 1 ignore each other
+        manager.set_filter("ball", groups.filter_of(1))
+    """
+
+    _masks: List[int]
+
+    def __init__(self) -> None:
+        self._masks = [_ALL_BITS] * _NUM_GROUPS
+
+    def set(self, group1: int, group2: int, can_meet: bool) -> None:
+        """Set whether objects of two groups, or of one, can be in contact."""
+        can_meet = _arguments.flag(can_meet, "can_meet")
+        one, two = _group(group1, "group1"), _group(group2, "group2")
+        for mine, other in ((one, two), (two, one)):
+            bit = 1 << other
+            self._masks[mine] = self._masks[mine] | bit if can_meet else self._masks[mine] & ~bit
+
+    def can_meet(self, group1: int, group2: int) -> bool:
+        """Whether objects of two groups, or of one, can be in contact."""
+        return bool(self._masks[_group(group1, "group1")] >> _group(group2, "group2") & 1)
+
+    def filter_of(self, group: int) -> Filter:
+        """The Filter of an object of a group."""
+        number = _group(group, "group")
+        return Filter(1 << number, self._masks[number])
+
+
+def _group(group: int, name: str) -> int:
+    return _arguments.integer(group, name, _NUM_GROUPS - 1)
+
+
 _ACCEPTS_ALL = Filter()
 
 

@@ -63,6 +63,7 @@ void bindManager(py::module_& module) {
       .def("_set_filter", &Manager::setFilter)
       .def("_set_self_collision", &Manager::setSelfCollision)
       .def("_set_thickness", &Manager::setThickness)
+      .def("_set_min_approach_speed", &Manager::setMinApproachSpeed)
       .def("_set_pair_distance", &Manager::setPairDistance)
       .def("_ask_all", &Manager::askAll<Request>)
       .def("_ask_all", &Manager::askAll<DistanceRequest>)

@@ -177,6 +177,11 @@ class Manager : public Guarded {
     manager_.setThickness(&object, thickness);
   }
 
+  void setMinApproachSpeed(ManagedObject& object, double speed) {
+    const Writing writing(*this);
+    manager_.setMinApproachSpeed(&object, speed);
+  }
+
   /// @param distance  none: that of the two thicknesses
   void setPairDistance(ManagedObject& o1, ManagedObject& o2,
                        std::optional<double> distance) {

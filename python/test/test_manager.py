@@ -257,6 +257,100 @@ def test_thickness_is_added_to_the_distance():
     assert not manager.collide()
 
 
+def test_approach_speed_of_an_object():
+    floor = fcl_ccd.RigidMesh(*grid(4))
+    manager = fcl_ccd.CollisionManager()
+    manager.register("floor", floor)
+    manager.register("slides", floor, (pose((0, 0, 0)), pose((0.1, 0, 0))))
+    manager.register("falls", floor, (pose((0, 0, 1)), pose((0, 0, -1))))
+    assert len(manager.collide().pairs) == 3
+    manager.set_min_approach_speed("floor", 1e-3)
+    found = {(p.o1, p.o2) for p in manager.collide().pairs}
+    assert found == {("floor", "falls"), ("slides", "falls")}
+    manager.set_min_approach_speed("floor", 0)
+    assert len(manager.collide().pairs) == 3
+    with pytest.raises(ValueError, match="speed is negative or not finite"):
+        manager.set_min_approach_speed("floor", -1)
+
+
+def test_groups_are_a_table():
+    groups = fcl_ccd.Groups()
+    random = np.random.default_rng(2)
+    table = np.ones((32, 32), bool)
+    for a, b, can in random.integers(0, (32, 32, 2), (400, 3)):
+        groups.set(a, b, bool(can))
+        table[a, b] = table[b, a] = can
+    filters = [groups.filter_of(g) for g in range(32)]
+    for a, b in itertools.product(range(32), range(32)):
+        meet = filters[a].group & filters[b].mask and filters[b].group & filters[a].mask
+        assert groups.can_meet(a, b) == table[a, b] == bool(meet)
+    with pytest.raises(ValueError, match="group"):
+        groups.filter_of(32)
+
+
+def name_of(pair, contact):
+    """What makes a contact the same in the next step, without the package's keys."""
+    kind, ids = fcl_ccd.Kind(contact["kind"]), [int(i) for i in contact["vertices"]]
+    if kind >= fcl_ccd.Kind.VERTEX_SHAPE:
+        return "shape", int(contact["b1"]), int(contact["b2"])
+    if kind == fcl_ccd.Kind.EDGE_EDGE:
+        edges = [tuple(sorted(ids[:2])), tuple(sorted(ids[2:4]))]
+        return kind, *(sorted(edges) if pair.o1 == pair.o2 else edges)
+    side = bool(contact["first_on_o1"])
+    if kind == fcl_ccd.Kind.CROSSING:
+        return kind, side, tuple(sorted(ids[:2])), tuple(sorted(ids[2:]))
+    return kind, side, ids[0], tuple(sorted(ids[1:]))
+
+
+def test_persistent_pairs_of_random_steps():
+    random = np.random.default_rng(6)
+    shapes = fcl_ccd.Sphere(0.5), fcl_ccd.Box(0.8, 0.8, 0.8), BALL
+    manager = fcl_ccd.CollisionManager()
+    cloth = fcl_ccd.DeformableMesh(PREVIOUS, TRIANGLES)
+    manager.register("cloth", cloth, self_collision=True)
+    for i in range(12):
+        manager.register(i, shapes[i % 3], pose(random.uniform(-1, 1, 3)))
+    tracked = fcl_ccd.PersistentPairs()
+    before, ids, same, new, gone = {}, set(), 0, 0, 0
+    for step in range(12):
+        cloth.update(CURRENT if step % 2 == 0 else PREVIOUS)
+        poses = {i: pose(random.uniform(-1, 1, 3)) for i in random.choice(12, 3, False)}
+        manager.update(["cloth"])
+        manager.step({int(i): p for i, p in poses.items()})
+        result = manager.collide()
+        tracked.update(result)
+        now = {}
+        assert len(tracked.pairs) == len(result.pairs)
+        for pair, found in zip(tracked.pairs, result.pairs):
+            key = found.o1, found.o2
+            assert (pair.o1, pair.o2) == key
+            old = before.get(key)
+            assert pair.is_new == (old is None)
+            names = [name_of(found, c) for c in found.result.contacts]
+            assert len(set(names)) == len(names)
+            if old is None:
+                assert pair.id not in ids and pair.data is None
+                ids.add(pair.id)
+                pair.data = pair.id
+                expected = [-1] * len(names)
+            else:
+                assert (pair.id, pair.num_steps) == (old[0], old[1] + 1)
+                assert pair.data == pair.id
+                expected = [old[2].get(name, -1) for name in names]
+            assert pair.previous.tolist() == expected
+            same += sum(place >= 0 for place in expected)
+            new += sum(place < 0 for place in expected)
+            now[key] = pair.id, pair.num_steps, {name: i for i, name in enumerate(names)}
+        assert {(p.o1, p.o2) for p in tracked.removed} == set(before) - set(now)
+        gone += len(tracked.removed)
+        before = now
+    assert same > 20 and new > 20 and gone > 5
+    assert "removed" in repr(tracked)
+    tracked.clear()
+    tracked.update(result)
+    assert all(pair.is_new for pair in tracked.pairs) and not tracked.removed
+
+
 def test_changes_during_a_query_are_refused():
     manager = fcl_ccd.CollisionManager()
     manager.register("ball", BALL, DOWN)

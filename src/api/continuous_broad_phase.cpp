@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <unordered_set>
 
@@ -12,6 +14,7 @@
 #include "broadphase/broad_phase.h"
 #include "fcl/broadphase/detail/pair_answers.h"
 #include "fcl/broadphase/swept_collision_object.h"
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "prepare/object_bounds.h"
 #include "prepare/query_arguments.h"
 
@@ -31,6 +34,8 @@ class ContinuousBroadPhase<S>::Boxes : public BroadPhase {
  public:
   /// What the last change read. Its memory is used again.
   BoundsList read;
+  /// DeformableMesh::lastRevision() when all objects were found to be up to date.
+  std::atomic<std::uint64_t> up_to_date{0};
 };
 
 namespace {
@@ -175,6 +180,21 @@ std::vector<void*> ContinuousBroadPhase<S>::objects() const {
 }
 
 template <typename S>
+void ContinuousBroadPhase<S>::requireUpToDate(const void* except) const {
+  const std::uint64_t last = DeformableMesh::lastRevision();
+  if (boxes_->up_to_date == last) return;
+  if (const void* changed = boxes_->findChanged(except)) {
+    const std::vector<void*> all = objects();
+    throw Exception(
+        "object " +
+        std::to_string(std::find(all.begin(), all.end(), changed) - all.begin()) +
+        ": its mesh was changed after the manager had read it. Call "
+        "update() after a change");
+  }
+  if (!except) boxes_->up_to_date = last;
+}
+
+template <typename S>
 const BroadPhase& ContinuousBroadPhase<S>::boxes() const {
   return *boxes_;
 }
@@ -209,6 +229,7 @@ template <typename S>
 std::vector<BroadPhasePair> ContinuousBroadPhase<S>::pairs(
     const BroadPhaseSettings& settings) const {
   const DefaultFloatingPoint mode;
+  requireUpToDate();
   return toPairs(boxes_->pairs(meetingQueryOf(settings)));
 }
 
@@ -216,6 +237,7 @@ template <typename S>
 std::vector<BroadPhasePair> ContinuousBroadPhase<S>::pairsOf(
     void* object, Read read, const BroadPhaseSettings& settings) const {
   const DefaultFloatingPoint mode;
+  requireUpToDate(object);
   const MeetingQuery query = meetingQueryOf(settings);
   BoundsList bounds;
   readBounds<S>(&object, 1, read, &prefetchNothing, bounds);
@@ -226,12 +248,15 @@ template <typename S>
 std::vector<BroadPhasePair> ContinuousBroadPhase<S>::pairsWith(
     const ContinuousBroadPhase& other, const BroadPhaseSettings& settings) const {
   const DefaultFloatingPoint mode;
+  requireUpToDate();
+  other.requireUpToDate();
   return toPairs(boxes_->pairsWith(*other.boxes_, meetingQueryOf(settings)));
 }
 
 template <typename S>
 void ContinuousBroadPhase<S>::visitNearest(const NearestSettings& settings) const {
   const DefaultFloatingPoint mode;
+  requireUpToDate();
   boxes_->visitNearest(nearestQueryOf(settings));
 }
 
@@ -239,6 +264,7 @@ template <typename S>
 void ContinuousBroadPhase<S>::visitNearestOf(void* object, Read read,
                                              const NearestSettings& settings) const {
   const DefaultFloatingPoint mode;
+  requireUpToDate(object);
   BoundsList bounds;
   readBounds<S>(&object, 1, read, &prefetchNothing, bounds);
   boxes_->visitNearestOf(object, bounds.at(0), nearestQueryOf(settings));
@@ -248,6 +274,8 @@ template <typename S>
 void ContinuousBroadPhase<S>::visitNearestWith(const ContinuousBroadPhase& other,
                                                const NearestSettings& settings) const {
   const DefaultFloatingPoint mode;
+  requireUpToDate();
+  other.requireUpToDate();
   boxes_->visitNearestWith(*other.boxes_, nearestQueryOf(settings));
 }
 
@@ -256,8 +284,22 @@ void visitInThreads(std::size_t count, int num_threads,
   deformable::parallelFor(count, num_threads, visit);
 }
 
-template class ContinuousBroadPhase<double>;
-template class ContinuousBroadPhase<float>;
+template <typename S>
+bool areStraightMeshes(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2) {
+  const DefaultFloatingPoint mode;
+  const auto isStraight = [](const MovingGeometry<S>& o) {
+    const PlacedGeometry<S> placed(o);
+    return placed.isMesh() && placed.goesStraight();
+  };
+  return isStraight(o1) && isStraight(o2);
+}
+
+#define FCL_CCD_INSTANTIATE(S)            \
+  template class ContinuousBroadPhase<S>; \
+  template bool areStraightMeshes(const MovingGeometry<S>&, const MovingGeometry<S>&);
+FCL_CCD_INSTANTIATE(double)
+FCL_CCD_INSTANTIATE(float)
+#undef FCL_CCD_INSTANTIATE
 
 }  // namespace detail
 }  // namespace fcl

@@ -13,6 +13,7 @@
 #include "broadphase/broad_phase.h"
 #include "fcl/broadphase/detail/robot_step.h"
 #include "fcl/common/exception.h"
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "paths/chain_path.h"
 #include "prepare/object_bounds.h"
 #include "prepare/query_arguments.h"
@@ -38,6 +39,11 @@ class RobotPart {
   /// Its boxes in its own frame. Planes and halfspaces have none.
   bool has_boxes;
   deformable::BodyBox box[2];
+  /// Of a DeformableBVHModel, when it was read.
+  const DeformableMesh* model;
+  std::uint64_t revision;
+
+  bool isUpToDate() const { return !model || *model->revision() == revision; }
 };
 
 namespace {
@@ -88,6 +94,8 @@ RobotPartPtr<S> makeRobotPart(const JointTreePtr& tree, int link,
     const BoundedBody body = boundedBodyOf(placed, part->name.c_str());
     std::copy(body.box, body.box + 2, part->box);
   }
+  part->model = placed.model();
+  part->revision = part->model ? part->model->revision()->load() : 0;
   return part;
 }
 
@@ -114,6 +122,10 @@ class RobotStep<S>::Parts {
     const DefaultFloatingPoint mode;
     paths_.reserve(bodies.parts.size());
     for (const auto& part : bodies.parts) {
+      if (!part->isUpToDate())
+        throw Exception(part->name +
+                        " has a mesh that was changed after the robot had read it. Call "
+                        "update() after a change");
       paths_.emplace_back(chain, part->frame);
       paths_.back().keepPath();
     }
@@ -198,7 +210,10 @@ std::vector<RobotPair> RobotStep<S>::pairs(const ContinuousBroadPhase<S>* obstac
   BoundsList bounds;
   parts_->appendBounds(bounds);
   std::vector<FoundPair> found;
-  if (obstacles) parts_->addMet(bounds, obstacles->boxes(), query, found);
+  if (obstacles) {
+    obstacles->requireUpToDate();
+    parts_->addMet(bounds, obstacles->boxes(), query, found);
+  }
   parts_->addOwn(bounds, query, found);
   std::sort(found.begin(), found.end(), [order](const FoundPair& x, const FoundPair& y) {
     if (order == Order::kObstaclesFirst && x.isOwn() != y.isOwn()) return y.isOwn();

@@ -79,6 +79,7 @@ BroadPhase::SlotNumber BroadPhase::newSlot(void* object) {
   at(i).filter = ObjectFilter();
   at(i).self = false;
   at(i).margin = 0;
+  at(i).source = -1;
   return i;
 }
 
@@ -122,6 +123,31 @@ void BroadPhase::leave(SlotNumber i, Mobility mobility) {
   members[at(i).member] = members.back();
   at(members.back()).member = at(i).member;
   members.pop_back();
+}
+
+void BroadPhase::setSource(SlotNumber i, const Revision* revision) {
+  std::ptrdiff_t& source = at(i).source;
+  if (revision) {
+    if (source < 0) {
+      source = static_cast<std::ptrdiff_t>(sources_.size());
+      sources_.emplace_back();
+    }
+    sources_[static_cast<std::size_t>(source)] = {*revision, (*revision)->load(), i};
+  } else if (source >= 0) {
+    assert(sources_[static_cast<std::size_t>(source)].slot == i);
+    sources_[static_cast<std::size_t>(source)] = sources_.back();
+    at(sources_.back().slot).source = source;
+    sources_.pop_back();
+    source = -1;
+  }
+}
+
+const void* BroadPhase::findChanged(const void* except) const {
+  for (const Source& source : sources_)
+    if (source.revision->load(std::memory_order_relaxed) != source.read &&
+        at(source.slot).object != except)
+      return at(source.slot).object;
+  return nullptr;
 }
 
 void BroadPhase::markStale(SlotNumber i) {
@@ -183,6 +209,7 @@ void BroadPhase::change(const std::vector<SlotNumber>& slots, const BoundsList& 
     }
     const Mobility before = slot.mobility;
     setBounds(bounds.at(i), slot);
+    setSource(number, bounds.items[i].revision);
     if (slot.rests) markStale(number);
     if (are_new || slot.mobility != before) {
       if (!are_new) leave(number, before);
@@ -217,6 +244,7 @@ void BroadPhase::remove(const void* object) {
   if (at(i).rests) markStale(i);
   leave(i, at(i).mobility);
   if (at(i).mobility != kUnbounded) tree_[at(i).mobility].remove(i);
+  setSource(i, nullptr);
   at(i).object = nullptr;
   at(i).flat.reset();
   free_.push_back(i);
@@ -228,6 +256,7 @@ void BroadPhase::clear() {
   slots_.clear();
   free_.clear();
   for (auto& members : members_) members.clear();
+  sources_.clear();
   for (auto& tree : tree_) tree.clear();
   resting_.clear();
   stale_.clear();

@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_BROADPHASE_BROAD_PHASE_H
 #define FCL_CCD_BROADPHASE_BROAD_PHASE_H
 
+#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
@@ -30,6 +31,9 @@ struct ObjectFilter {
   }
 };
 
+/// @brief A number that is another one after each change of what bounds were read from.
+using Revision = std::shared_ptr<std::atomic<std::uint64_t>>;
+
 /// @brief The moving bounds of many objects in one array.
 struct BoundsList {
   struct Item {
@@ -38,6 +42,8 @@ struct BoundsList {
     std::size_t first;
     int num_spans;
     std::size_t flat{kNoFlat};
+    /// Of what was read. Null: it does not tell when it changes.
+    const Revision* revision{nullptr};
   };
   std::vector<HalfAxisBox> boxes;
   std::vector<MovingFlat> flats;
@@ -114,6 +120,9 @@ class BroadPhase {
   bool contains(const void* object) const { return slot_of_.count(object) != 0; }
   /// @brief In the order in which they were inserted.
   std::vector<void*> objects() const;
+  /// @brief An object whose revision is not the one that was read; null: there is none.
+  /// @param except  an object that does not count
+  const void* findChanged(const void* except) const;
 
   /// @pre no object is there, and none twice
   void insert(void* const* objects, const BoundsList& bounds);
@@ -177,6 +186,8 @@ class BroadPhase {
     Mobility mobility{kUnbounded};
     /// In members_[mobility].
     std::size_t member{0};
+    /// In sources_, or -1.
+    std::ptrdiff_t source{-1};
     double margin{0};
     /// Of the bounds, with the margin around it.
     LinearBox box;
@@ -189,6 +200,12 @@ class BroadPhase {
     }
   };
   using SlotPair = std::pair<SlotNumber, SlotNumber>;
+  /// What an object was read from, if that says when it changes.
+  struct Source {
+    Revision revision;
+    std::uint64_t read;
+    SlotNumber slot;
+  };
   /// Two objects that meet, with all that sorting needs.
   struct Found {
     MeetingWindow window;
@@ -215,6 +232,7 @@ class BroadPhase {
   static void setBox(Slot& slot);
   void join(SlotNumber i);
   void leave(SlotNumber i, Mobility mobility);
+  void setSource(SlotNumber i, const Revision* revision);
   void change(const std::vector<SlotNumber>& slots, const BoundsList& bounds,
               bool are_new);
   void buildTree(Mobility mobility);
@@ -238,6 +256,7 @@ class BroadPhase {
   std::vector<Slot> slots_;
   std::vector<SlotNumber> free_;
   std::vector<SlotNumber> members_[kNumMobilities];
+  std::vector<Source> sources_;
   MovingBoxTree tree_[2];
   std::uint64_t next_serial_{0};
 

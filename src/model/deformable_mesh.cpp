@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -20,6 +22,8 @@
 namespace fcl {
 namespace detail {
 namespace {
+
+std::atomic<std::uint64_t> last_revision{0};
 
 /// Returns what is wrong, or an empty string.
 template <typename S>
@@ -54,7 +58,22 @@ DeformableMesh::DeformableMesh(const DeformableMesh& other)
       free_edges_(other.free_edges_),
       free_points_(other.free_points_) {}
 
-DeformableMesh& DeformableMesh::operator=(DeformableMesh&& other) noexcept = default;
+DeformableMesh& DeformableMesh::operator=(DeformableMesh&& other) noexcept {
+  state_ = other.state_;
+  last_error_ = std::move(other.last_error_);
+  tree_ = std::move(other.tree_);
+  num_threads_ = other.num_threads_;
+  num_restructurings_ = other.num_restructurings_;
+  is_deforming_ = other.is_deforming_;
+  free_edges_ = std::move(other.free_edges_);
+  free_points_ = std::move(other.free_points_);
+  takeRevision();
+  return *this;
+}
+
+std::uint64_t DeformableMesh::lastRevision() { return last_revision.load(); }
+
+void DeformableMesh::takeRevision() { *revision_ = ++last_revision; }
 
 bool DeformableMesh::isBuilt() const {
   const Phase now = phase();
@@ -349,6 +368,7 @@ void DeformableMesh::refitTree(const deformable::VertexFrames& frames) {
 
 void DeformableMesh::refitChangedTree(const deformable::VertexFrames& frames) {
   const deformable::DefaultFloatingPoint mode;
+  takeRevision();
   deformable::inArena(num_threads_, [&] { tree_->refit(frames, num_threads_); });
   is_deforming_ = false;
   if (frames.isStill()) return;

@@ -11,6 +11,7 @@
 
 #include "base/default_floating_point.h"
 #include "fcl/common/exception.h"
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "numerics/error_bounds.h"
 #include "paths/posed_vector.h"
 #include "prepare/class_cast.h"
@@ -93,6 +94,12 @@ std::string nameOfPart(std::size_t number) {
 }
 
 template <typename S>
+std::uint64_t revisionOf(const CollisionGeometry<S>& part) {
+  const DeformableMesh* model = deformable::meshClassOf(part).model;
+  return model ? model->revision()->load() : 0;
+}
+
+template <typename S>
 typename CompoundParts<S>::Part readPart(
     const std::shared_ptr<const CollisionGeometry<S>>& geometry, const Pose& offset,
     const std::string& name) {
@@ -107,7 +114,8 @@ typename CompoundParts<S>::Part readPart(
   if (!at_rest.isKnown())
     throw Exception(name + " is " + kindOf(*geometry) +
                     ", not a triangle mesh, a shape or an octree. Give one of these");
-  typename CompoundParts<S>::Part part{geometry, offset, isBounded(at_rest), {}};
+  typename CompoundParts<S>::Part part{
+      geometry, offset, isBounded(at_rest), {}, revisionOf(*geometry)};
   if (part.has_box)
     part.box = placed(boundedBodyOf(at_rest, name.c_str()).box[0], offset);
   else
@@ -149,9 +157,15 @@ void requireParts(const CompoundParts<S>& compound, const std::string& name) {
   if (compound.parts.empty())
     throw Exception(name + " is a compound without parts. Call addPart() first");
   // Also of parts that are far: a box that was read before a mesh deformed may be wrong.
-  for (std::size_t i = 0; i < compound.parts.size(); ++i)
-    if (compound.parts[i].geometry->getObjectType() == OT_BVH)
-      requireRigidPart(*compound.parts[i].geometry, nameOfPart(i) + ", " + name + ",");
+  for (std::size_t i = 0; i < compound.parts.size(); ++i) {
+    const auto& part = compound.parts[i];
+    if (part.geometry->getObjectType() != OT_BVH) continue;
+    requireRigidPart(*part.geometry, nameOfPart(i) + ", " + name + ",");
+    if (revisionOf(*part.geometry) != part.revision)
+      throw Exception(nameOfPart(i) + ", " + name +
+                      ", is a mesh that was changed after the compound had read it. Call "
+                      "update() of the compound");
+  }
 }
 
 template <typename S>

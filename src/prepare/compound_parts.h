@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_PREPARE_COMPOUND_PARTS_H
 #define FCL_CCD_PREPARE_COMPOUND_PARTS_H
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,6 +24,8 @@ struct CompoundParts {
     /// In the frame of the compound. Planes and halfspaces have none.
     bool has_box;
     deformable::BodyBox box;
+    /// Of a DeformableBVHModel; 0 for others.
+    std::uint64_t revision;
   };
   std::vector<Part> parts;
   /// Of all parts.
@@ -34,7 +37,7 @@ struct CompoundParts {
 template <typename S>
 const CompoundParts<S>* compoundPartsOf(const CollisionGeometry<S>& o);
 
-/// @brief Refuses a compound without parts.
+/// @brief Refuses a compound without parts, or with a part that it has to read again.
 /// @param name  of the compound in errors
 template <typename S>
 void requireParts(const CompoundParts<S>& compound, const std::string& name);

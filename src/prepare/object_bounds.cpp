@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/geometry/shape/halfspace.h"
 #include "fcl/geometry/shape/plane.h"
 #include "numerics/error_bounds.h"
@@ -287,10 +288,13 @@ BoundedBody boundedBodyOf(const PlacedGeometry<S>& placed, const char* name) {
 template <typename S>
 void appendBounds(const MovingGeometry<S>& moving, BoundsList& list) {
   const PlacedGeometry<S> placed(moving);
-  if (isBounded(placed)) return appendBody(boundedBodyOf(placed, "object"), list);
-  if (placed.isShape() && moving.path != PathKind::kUnknown)
-    return appendFlat(placed, list);
-  appendUnbounded(list);
+  if (isBounded(placed))
+    appendBody(boundedBodyOf(placed, "object"), list);
+  else if (placed.isShape() && moving.path != PathKind::kUnknown)
+    appendFlat(placed, list);
+  else
+    appendUnbounded(list);
+  if (placed.model()) list.items.back().revision = &placed.model()->revision();
 }
 
 #define FCL_CCD_INSTANTIATE(S)                                               \

@@ -124,15 +124,15 @@ void requireFinite(const Pose& beginning, const Pose& end, const std::string& na
 }
 
 template <typename S>
-MeshKind meshKindOf(const CollisionGeometry<S>& geometry) {
+MeshClass meshClassOf(const CollisionGeometry<S>& geometry) {
   if (const DeformableMesh* mesh = deformableMeshOf(geometry))
-    return mesh->isDeforming() ? MeshKind::kDeforming : MeshKind::kRigid;
+    return {mesh->isDeforming() ? MeshKind::kDeforming : MeshKind::kRigid, mesh};
   MeshKind kind = MeshKind::kNotAMesh;
   visitModel(geometry, [&kind](const auto& model) {
     if (model.num_vertices > 0 && model.num_tris == 0) return;  // a point cloud
     kind = isDeforming(model) ? MeshKind::kDeforming : MeshKind::kRigid;
   });
-  return kind;
+  return {kind, nullptr};
 }
 
 template <typename S>
@@ -265,7 +265,7 @@ void PreparedMesh::refit(const std::string& name, int num_threads) {
 }
 
 #define FCL_CCD_INSTANTIATE(S)                                                  \
-  template MeshKind meshKindOf(const CollisionGeometry<S>&);                    \
+  template MeshClass meshClassOf(const CollisionGeometry<S>&);                  \
   template std::size_t numTrianglesOf(const CollisionGeometry<S>&);             \
   template PreparedMesh::PreparedMesh(const CollisionGeometry<S>&, const Pose&, \
                                       const Pose&, const std::string&, int,     \

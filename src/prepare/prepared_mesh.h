@@ -14,6 +14,9 @@ template <typename BV>
 class BVHModel;
 
 namespace detail {
+
+class DeformableMesh;
+
 namespace deformable {
 
 /// @brief How a geometry moves. The choice of the method depends on it.
@@ -30,8 +33,20 @@ enum class FeatureOwners {
             ///< in its triangles
 };
 
+/// @brief What a query asks of the class of a geometry.
+struct MeshClass {
+  MeshKind kind;
+  /// A DeformableBVHModel whose moving tree is up to date; null otherwise.
+  const DeformableMesh* model;
+};
+
 template <typename S>
-MeshKind meshKindOf(const CollisionGeometry<S>& geometry);
+MeshClass meshClassOf(const CollisionGeometry<S>& geometry);
+
+template <typename S>
+MeshKind meshKindOf(const CollisionGeometry<S>& geometry) {
+  return meshClassOf(geometry).kind;
+}
 
 /// @brief The number of triangles of a geometry; 0 if it is no mesh.
 template <typename S>

@@ -96,8 +96,8 @@ class PlacedGeometry {
   explicit PlacedGeometry(const MovingGeometry<S>& moving)
       : moving_(moving),
         is_shape_(deformable::isConvexShape(*moving.geometry)),
-        kind_(is_shape_ ? deformable::MeshKind::kNotAMesh
-                        : deformable::meshKindOf(*moving.geometry)),
+        mesh_(is_shape_ ? deformable::MeshClass{deformable::MeshKind::kNotAMesh, nullptr}
+                        : deformable::meshClassOf(*moving.geometry)),
         is_octree_(!is_shape_ && deformable::isOctree(*moving.geometry)),
         compound_(is_shape_ || isMesh() || is_octree_
                       ? nullptr
@@ -111,7 +111,7 @@ class PlacedGeometry {
       std::copy(beginning_.rotation, beginning_.rotation + 9, end_.rotation);
     const bool bends = moving.path == PathKind::kSpline ||
                        moving.path == PathKind::kBounded || (isTurn() && !is_constant);
-    if (kind_ == MeshKind::kDeforming) goes_straight_ = !bends;
+    if (mesh_.kind == MeshKind::kDeforming) goes_straight_ = !bends;
     if (isRigid())
       goes_straight_ = !bends && is_constant && moving.path != PathKind::kUnknown;
     if (isMesh() && goes_straight_ && !moving.offset.is_set) return;
@@ -136,13 +136,17 @@ class PlacedGeometry {
     return moving_.offset.is_set ? body_[1] : end_;
   }
 
-  bool isMesh() const { return kind_ != deformable::MeshKind::kNotAMesh; }
+  /// A DeformableBVHModel whose moving tree is up to date; null otherwise.
+  const DeformableMesh* model() const { return mesh_.model; }
+
+  bool isMesh() const { return mesh_.kind != deformable::MeshKind::kNotAMesh; }
   bool isShape() const { return is_shape_; }
   bool isOctree() const { return is_octree_; }
   /// Null: it is none.
   const CompoundParts<S>* compound() const { return compound_; }
   bool isRigid() const {
-    return kind_ == deformable::MeshKind::kRigid || is_shape_ || is_octree_ || compound_;
+    return mesh_.kind == deformable::MeshKind::kRigid || is_shape_ || is_octree_ ||
+           compound_;
   }
 
   /// Whether all vertices move on straight lines.
@@ -197,7 +201,7 @@ class PlacedGeometry {
 
   const MovingGeometry<S>& moving_;
   bool is_shape_;
-  deformable::MeshKind kind_;
+  deformable::MeshClass mesh_;
   bool is_octree_;
   const CompoundParts<S>* compound_;
   deformable::Pose beginning_, end_;

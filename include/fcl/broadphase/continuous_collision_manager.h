@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <unordered_map>
@@ -15,10 +16,12 @@
 #include <vector>
 
 #include "fcl/broadphase/broadphase_continuous_collision_manager.h"
+#include "fcl/broadphase/detail/manager_result.h"
 #include "fcl/broadphase/detail/nearest_objects.h"
 #include "fcl/broadphase/detail/object_distances.h"
 #include "fcl/broadphase/detail/object_motions.h"
 #include "fcl/broadphase/detail/pair_answers.h"
+#include "fcl/broadphase/detail/persistent_pairs.h"
 #include "fcl/broadphase/swept_collision_object.h"
 #include "fcl/narrowphase/continuous_collision.h"
 
@@ -26,41 +29,6 @@ namespace fcl {
 
 template <typename S>
 class CollisionRobot;
-
-/// @brief Two objects in contact. A mesh in contact with itself is both of them.
-template <typename S>
-struct ContinuousPairResult {
-  ContinuousCollisionObject<S>* o1{nullptr};
-  ContinuousCollisionObject<S>* o2{nullptr};
-
-  /// @brief The answer of continuousCollide() for the two, o1 first.
-  ContinuousContactResult<S> result;
-};
-
-/// @brief The answer for many objects.
-template <typename S>
-struct ContinuousManagerResult {
-  bool is_collide{false};
-
-  /// @brief The time of the first contact among `pairs`, in fractions of the step; never
-  /// later than the true one. With ContinuousQuery::kAny that of the contact that was
-  /// found. 1 without collision.
-  S time_of_contact{1};
-
-  /// @brief ContinuousQuery::kFirst: the pair that is first in contact. kAny: one pair
-  /// that is in contact. kAll: all pairs in contact, sorted by their time of contact. If
-  /// times are equal, the order of the box pairs decides.
-  std::vector<ContinuousPairResult<S>> pairs;
-
-  /// @brief The number of pairs whose boxes meet.
-  std::size_t num_box_pairs{0};
-
-  /// @brief The number of pairs that were tested.
-  std::size_t num_tested{0};
-};
-
-using ContinuousManagerResultf = ContinuousManagerResult<float>;
-using ContinuousManagerResultd = ContinuousManagerResult<double>;
 
 /// @brief Finds the contacts of many objects that move. FCL declares the interface
 /// BroadPhaseContinuousCollisionManager and has no class that implements it; this class
@@ -78,8 +46,9 @@ using ContinuousManagerResultd = ContinuousManagerResult<double>;
 /// is a point cloud. A tilted plane or halfspace has none either, but bounds itself.
 ///
 /// The manager reads an object when it is registered or updated. After a change of its
-/// motion or of its geometry call update(). An object that rests (its box is the same at
-/// all times) costs nothing in a step in which it is not updated.
+/// motion or of its geometry call update(): queries throw after a change of a
+/// DeformableBVHModel by itself; other changes they cannot see. An object that rests (its
+/// box is the same at all times) costs nothing in a step in which it is not updated.
 ///
 /// Queries name pairs by their objects, in the order of their registration. The order of
 /// box pairs is that of the beginnings of their windows.
@@ -165,6 +134,12 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   /// @brief Takes back setPairDistance().
   void resetPairDistance(Object* o1, Object* o2);
 
+  /// @brief Sets how fast others must approach this object to be in contact with it: the
+  /// request's min_approach_speed for the pairs of the object, if that is less. Of two
+  /// objects the larger speed counts. It acts on pairs of meshes on straight paths; of
+  /// other pairs all contacts count. Of an object that is not registered it is 0.
+  void setMinApproachSpeed(Object* object, S speed);
+
   /// @brief Sets with which objects this one can be in contact. Callbacks do not get a
   /// pair that the filters reject. Groups of triangles act in the queries that take a
   /// request.
@@ -201,6 +176,15 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   void collide(const ContinuousCollisionManager& other,
                const ContinuousContactRequest<S>& request,
                ContinuousManagerResult<S>& result) const;
+
+  /// @brief Gives the pairs in contact to `visit` instead of a list, so that the memory
+  /// of a query has a bound: with ContinuousQuery::kAll each pair comes once it is
+  /// tested, in the order of the box pairs, until visit returns true; with kFirst and
+  /// kAny the one pair. At any time the query keeps at most one pair, with n threads up
+  /// to 1,024. num_max_contacts bounds the contacts of each. The calls come from the
+  /// caller's thread. They must not change the manager.
+  void collide(const ContinuousContactRequest<S>& request,
+               const std::function<bool(ContinuousPairResult<S>&)>& visit) const;
 
   /// @brief Calls back for each box pair of all objects, in the order of their windows,
   /// until the callback returns true. FCL's default callback is
@@ -289,10 +273,17 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   std::string nameOf(const Object* object) const;
   S distanceOf(const Object* o1, const ContinuousCollisionManager& other,
                const Object* o2) const;
+  S approachSpeedOf(const Object* o1, const ContinuousCollisionManager& other,
+                    const Object* o2, S of_request) const;
   void requireRegistered(const Object* object) const;
   void setMargin(const void* object);
   bool test(const detail::BroadPhasePair& pair, const ContinuousCollisionManager& other,
             Request& request, PairResult& tested) const;
+  /// @param take  as for giveAnswers()
+  /// @return the number of pairs that were tested
+  template <typename Take>
+  std::size_t give(const Pairs& pairs, const ContinuousCollisionManager& other,
+                   const Request& request, bool with_thickness, const Take& take) const;
   void answer(const Pairs& pairs, const ContinuousCollisionManager& other,
               const Request& request, Result& result, bool with_thickness = true) const;
   static void callBack(const Pairs& pairs, void* cdata,
@@ -319,6 +310,8 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   /// The filters that setFilter() has set.
   std::unordered_map<const Object*, ContinuousFilter> filters_;
   detail::ObjectDistances<S> distances_;
+  /// Those that setMinApproachSpeed() has set, above 0.
+  std::unordered_map<const Object*, S> approach_speeds_;
   mutable SweptObjects swept_objects_;
 };
 
@@ -348,6 +341,7 @@ template <typename S>
 void ContinuousCollisionManager<S>::unregisterObject(Object* object) {
   boxes_.remove(object);
   filters_.erase(object);
+  approach_speeds_.erase(object);
   for (const void* other : distances_.forget(object)) setMargin(other);
   swept_objects_.erase(object);
 }
@@ -356,6 +350,7 @@ template <typename S>
 void ContinuousCollisionManager<S>::clear() {
   boxes_.clear();
   filters_.clear();
+  approach_speeds_.clear();
   distances_.clear();
   swept_objects_.clear();
 }
@@ -449,7 +444,7 @@ void ContinuousCollisionManager<S>::setMargin(const void* object) {
 template <typename S>
 void ContinuousCollisionManager<S>::setThickness(Object* object, S thickness) {
   requireRegistered(object);
-  detail::requireThickness(thickness, "the thickness");
+  detail::requireNotNegative(thickness, "the thickness", "the unit of the coordinates");
   distances_.setThickness(object, thickness);
   setMargin(object);
 }
@@ -458,7 +453,7 @@ template <typename S>
 void ContinuousCollisionManager<S>::setPairDistance(Object* o1, Object* o2, S distance) {
   requireRegistered(o1);
   requireRegistered(o2);
-  detail::requireThickness(distance, "the distance");
+  detail::requireNotNegative(distance, "the distance", "the unit of the coordinates");
   distances_.setPair(o1, o2, distance);
   setMargin(o1);
   setMargin(o2);
@@ -471,6 +466,33 @@ void ContinuousCollisionManager<S>::resetPairDistance(Object* o1, Object* o2) {
   distances_.forgetPair(o1, o2);
   setMargin(o1);
   setMargin(o2);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::setMinApproachSpeed(Object* object, S speed) {
+  requireRegistered(object);
+  detail::requireNotNegative(speed, "the speed", "units of length per step");
+  if (speed > 0)
+    approach_speeds_[object] = speed;
+  else
+    approach_speeds_.erase(object);
+}
+
+/// The min_approach_speed of a query for an object of this manager and one of another
+/// one.
+template <typename S>
+S ContinuousCollisionManager<S>::approachSpeedOf(const Object* o1,
+                                                 const ContinuousCollisionManager& other,
+                                                 const Object* o2, S of_request) const {
+  const auto first = approach_speeds_.find(o1);
+  const auto second = other.approach_speeds_.find(o2);
+  S speed = of_request;
+  if (first != approach_speeds_.end()) speed = std::max(speed, first->second);
+  if (second != other.approach_speeds_.end()) speed = std::max(speed, second->second);
+  if (!(speed > of_request)) return of_request;
+  const bool are_straight =
+      detail::areStraightMeshes(detail::readObject<S>(o1), detail::readObject<S>(o2));
+  return are_straight ? speed : of_request;
 }
 
 /// What is added to the distance of a query for an object of this manager and one of
@@ -544,6 +566,17 @@ void ContinuousCollisionManager<S>::collide(const ContinuousCollisionManager& ot
 }
 
 template <typename S>
+void ContinuousCollisionManager<S>::collide(
+    const Request& request,
+    const std::function<bool(ContinuousPairResult<S>&)>& visit) const {
+  if (!visit) throw Exception("collide: the function for pairs is empty. Give one");
+  detail::BroadPhaseSettings settings = settingsOf(request);
+  settings.with_self = true;
+  give(boxes_.pairs(settings), *this, request, true,
+       [&visit](PairResult&& pair) { return visit(pair); });
+}
+
+template <typename S>
 const ContinuousFilter& ContinuousCollisionManager<S>::filterOf(
     const Object* object) const {
   static const ContinuousFilter none;
@@ -589,26 +622,43 @@ bool ContinuousCollisionManager<S>::test(const detail::BroadPhasePair& pair,
 }
 
 template <typename S>
+template <typename Take>
+std::size_t ContinuousCollisionManager<S>::give(const Pairs& pairs,
+                                                const ContinuousCollisionManager& other,
+                                                const Request& request,
+                                                bool with_thickness,
+                                                const Take& take) const {
+  const bool has_distances =
+                 with_thickness && (!distances_.empty() || !other.distances_.empty()),
+             has_speeds = !approach_speeds_.empty() || !other.approach_speeds_.empty();
+  Request common = request;
+  if (has_distances) detail::addDistance(request, S(0), common);
+  return detail::giveAnswers<PairResult>(
+      pairs, common,
+      [&](const detail::BroadPhasePair& pair, Request& asked, PairResult& tested) {
+        const Object *o1 = objectOf(pair.o1), *o2 = objectOf(pair.o2);
+        if (has_distances) detail::addDistance(request, distanceOf(o1, other, o2), asked);
+        if (has_speeds)
+          asked.min_approach_speed =
+              approachSpeedOf(o1, other, o2, request.min_approach_speed);
+        return test(pair, other, asked, tested);
+      },
+      take);
+}
+
+template <typename S>
 void ContinuousCollisionManager<S>::answer(const Pairs& pairs,
                                            const ContinuousCollisionManager& other,
                                            const Request& request, Result& out,
                                            bool with_thickness) const {
-  const bool has_distances =
-      with_thickness && (!distances_.empty() || !other.distances_.empty());
-  Request common = request;
-  if (has_distances) detail::addDistance(request, S(0), common);
-  auto answers = detail::answersOf<PairResult>(
-      pairs, common,
-      [&](const detail::BroadPhasePair& pair, Request& asked, PairResult& tested) {
-        if (has_distances)
-          detail::addDistance(
-              request, distanceOf(objectOf(pair.o1), other, objectOf(pair.o2)), asked);
-        return test(pair, other, asked, tested);
-      });
   Result result;
   result.num_box_pairs = pairs.size();
-  result.num_tested = answers.num_tested;
-  result.pairs = std::move(answers.pairs);
+  result.num_tested =
+      give(pairs, other, request, with_thickness, [&result](PairResult&& pair) {
+        result.pairs.push_back(std::move(pair));
+        return false;
+      });
+  detail::sortByTime<S>(result.pairs);
   result.is_collide = !result.pairs.empty();
   if (result.is_collide)
     result.time_of_contact = result.pairs.front().result.time_of_contact;

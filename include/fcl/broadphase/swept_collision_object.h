@@ -106,6 +106,10 @@ class FCL_EXPORT ContinuousBroadPhase {
   void visitNearestWith(const ContinuousBroadPhase& other,
                         const NearestSettings& settings) const;
 
+  /// Throws if a mesh was changed after its object was read.
+  /// @param except  an object that does not count
+  void requireUpToDate(const void* except = nullptr) const;
+
   /// For the library.
   const deformable::BroadPhase& boxes() const;
 
@@ -118,6 +122,11 @@ class FCL_EXPORT ContinuousBroadPhase {
 /// nothing of a motion that the library does not know.
 template <typename S>
 MovingGeometry<S> readObject(const void* object);
+
+/// @brief Whether both are meshes whose vertices go straight.
+template <typename S>
+FCL_EXPORT bool areStraightMeshes(const MovingGeometry<S>& o1,
+                                  const MovingGeometry<S>& o2);
 
 /// @brief Asks for the memory of the object's motion.
 template <typename S>

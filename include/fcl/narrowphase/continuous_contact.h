@@ -7,9 +7,11 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "fcl/ccd_version.h"
+#include "fcl/common/exception.h"
 #include "fcl/geometry/collision_geometry.h"
 #include "fcl/narrowphase/continuous_collision_request.h"
 #include "fcl/narrowphase/continuous_collision_result.h"
@@ -156,6 +158,50 @@ struct ContinuousFilter {
   /// each free point.
   std::vector<std::uint32_t> triangle_groups;
   std::vector<std::uint32_t> triangle_masks;
+};
+
+/// @brief Which groups of objects can be in contact, as a table of pairs of groups. All
+/// can at first. It makes the filters of objects: after a change make them anew.
+class ContinuousGroups {
+ public:
+  static constexpr int kMost = 32;
+
+  ContinuousGroups() { masks_.fill(~std::uint32_t{0}); }
+
+  /// @brief Sets whether objects of two groups, or of one, can be in contact.
+  /// @throws fcl::Exception  a number is not from 0 to kMost - 1
+  void set(int group1, int group2, bool can_meet) {
+    const std::uint32_t bit1 = bitOf(group1), bit2 = bitOf(group2);
+    setBits(group1, bit2, can_meet);
+    setBits(group2, bit1, can_meet);
+  }
+  /// @brief Whether they can. @throws fcl::Exception  as set()
+  bool canMeet(int group1, int group2) const {
+    bitOf(group1);
+    return (masks_[static_cast<std::size_t>(group1)] & bitOf(group2)) != 0;
+  }
+  /// @brief The filter of an object of a group. @throws fcl::Exception  as set()
+  ContinuousFilter filterOf(int group) const {
+    ContinuousFilter filter;
+    filter.group = bitOf(group);
+    filter.mask = masks_[static_cast<std::size_t>(group)];
+    return filter;
+  }
+
+ private:
+  static std::uint32_t bitOf(int group) {
+    if (group < 0 || group >= kMost)
+      throw Exception("there is no group " + std::to_string(group) +
+                      ". Groups are numbered from 0 to 31");
+    return std::uint32_t{1} << group;
+  }
+  void setBits(int group, std::uint32_t bits, bool can_meet) {
+    std::uint32_t& mask = masks_[static_cast<std::size_t>(group)];
+    mask = can_meet ? mask | bits : mask & ~bits;
+  }
+
+  /// Of each group: the groups that it can be in contact with.
+  std::array<std::uint32_t, kMost> masks_;
 };
 
 /// @brief A continuous request that asks for contacts. Two fields of FCL's request act:

@@ -16,11 +16,10 @@ namespace fcl {
 namespace detail {
 
 template <typename S>
-void requireThickness(S distance, const char* name) {
-  if (!(distance >= 0) || !std::isfinite(distance))
+void requireNotNegative(S number, const char* name, const char* unit) {
+  if (!(number >= 0) || !std::isfinite(number))
     throw Exception(std::string(name) +
-                    " is negative or not finite. Give 0 or more, in the unit of the "
-                    "coordinates");
+                    " is negative or not finite. Give 0 or more, in " + unit);
 }
 
 /// @brief What each object adds to the distance of a query, and pairs that have a

@@ -200,34 +200,52 @@ PairAnswers<Answer> firstAnswer(const std::vector<Pair>& pairs,
   return out;
 }
 
-/// @brief The pairs in contact that a request asks for, sorted by time.
+/// @brief Gives the pairs in contact that a request asks for to `take`, one after the
+/// other in the order of the pairs.
 /// @param pairs  sorted by t_lo
 /// @param asked  the test may set its filters. Its num_threads is for the pairs
 /// @param test  as for PairTests; several threads call it if the request has them
+/// @param take  bool take(answer): whether the query ends
+/// @return the number of pairs that were tested
 /// @throws fcl::Exception  a field of the request has no valid value, also without pairs
+template <typename Answer, typename S, typename Pair, typename Test, typename Take>
+std::size_t giveAnswers(const std::vector<Pair>& pairs,
+                        const ContinuousContactRequest<S>& asked, const Test& test,
+                        const Take& take) {
+  requireValid(asked);
+  ContinuousContactRequest<S> request = asked;
+  request.filter1 = request.filter2 = ContinuousFilter();
+  if (request.query == ContinuousQuery::kFirst) {
+    PairAnswers<Answer> answers = detail::firstAnswer<Answer>(pairs, request, test);
+    for (Answer& answer : answers.pairs) take(std::move(answer));
+    return answers.num_tested;
+  }
+  PairTests<Answer, S, Pair, Test> tests(pairs, request, test);
+  const bool is_any = request.query == ContinuousQuery::kAny;
+  std::size_t num_tested = 0;
+  for (std::size_t first = 0; first < pairs.size();) {
+    const std::size_t count = tests.nextBlock(first);
+    for (auto& tested : tests.test(first, count, request)) {
+      ++num_tested;
+      if (tested.error) std::rethrow_exception(tested.error);
+      if (tested.is_collide && (take(std::move(tested.answer)) || is_any))
+        return num_tested;
+    }
+    first += count;
+  }
+  return num_tested;
+}
+
+/// @brief As giveAnswers(): the pairs, sorted by time.
 template <typename Answer, typename S, typename Pair, typename Test>
 PairAnswers<Answer> answersOf(const std::vector<Pair>& pairs,
                               const ContinuousContactRequest<S>& asked,
                               const Test& test) {
-  requireValid(asked);
-  ContinuousContactRequest<S> request = asked;
-  request.filter1 = request.filter2 = ContinuousFilter();
-  if (request.query == ContinuousQuery::kFirst)
-    return detail::firstAnswer<Answer>(pairs, request, test);
   PairAnswers<Answer> out;
-  PairTests<Answer, S, Pair, Test> tests(pairs, request, test);
-  const bool is_any = request.query == ContinuousQuery::kAny;
-  for (std::size_t first = 0; first < pairs.size() && !(is_any && !out.pairs.empty());) {
-    const std::size_t count = tests.nextBlock(first);
-    for (auto& tested : tests.test(first, count, request)) {
-      ++out.num_tested;
-      if (tested.error) std::rethrow_exception(tested.error);
-      if (!tested.is_collide) continue;
-      out.pairs.push_back(std::move(tested.answer));
-      if (is_any) break;
-    }
-    first += count;
-  }
+  out.num_tested = detail::giveAnswers<Answer>(pairs, asked, test, [&](Answer&& answer) {
+    out.pairs.push_back(std::move(answer));
+    return false;
+  });
   detail::sortByTime<S>(out.pairs);
   return out;
 }

@@ -7,6 +7,7 @@
 #endif
 
 #include <array>
+#include <atomic>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
@@ -152,6 +153,15 @@ class DeformableMesh {
   /// @brief How many updates since the build have restructured parts of the moving tree.
   std::size_t numRestructurings() const { return num_restructurings_; }
 
+  /// @brief A number that is another one after each change of the frames or triangles.
+  using Revision = std::shared_ptr<std::atomic<std::uint64_t>>;
+
+  /// @brief That of the model. Who keeps a copy of the pointer may outlive the model.
+  const Revision& revision() const { return revision_; }
+  /// @brief The number of the last change of any model. While it stays, no model has
+  /// changed.
+  static std::uint64_t lastRevision();
+
   /// @brief Whether an update or replacement has begun and not ended.
   bool isUpdateOpen() const { return state_.openUpdate() != OpenUpdate::kNone; }
 
@@ -243,12 +253,15 @@ class DeformableMesh {
   std::string last_error_;
 
  private:
+  void takeRevision();
+
   std::unique_ptr<deformable::MovingKdopTree> tree_;
   int num_threads_{1};
   std::vector<Triangle> leavesOf(const Triangle* triangles,
                                  std::size_t num_triangles) const;
 
   std::size_t num_restructurings_{0};
+  Revision revision_{std::make_shared<std::atomic<std::uint64_t>>(0)};
   bool is_deforming_{false};
   std::vector<FreeEdge> free_edges_;
   std::vector<std::size_t> free_points_;
