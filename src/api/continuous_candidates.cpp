@@ -11,6 +11,7 @@
 #include "prepare/prepared_mesh.h"
 #include "prepare/prepared_motion.h"
 #include "prepare/query_arguments.h"
+#include "prepare/query_range.h"
 #include "query/deformable_query.h"
 
 namespace fcl {
@@ -86,6 +87,7 @@ bool motionCandidates(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                       const CandidateSink& sink, double min_distance) {
   const PreparedMotion motion1 = preparedMotion(o1, "o1"),
                        motion2 = preparedMotion(o2, "o2");
+  requireLeastSize(motion1, motion2);
   return handOut(sink, [&](const auto& inner) {
     const deformable::DefaultFloatingPoint mode;
     return deformable::curvedCandidates(motion1.body(), motion2.body(), inner,

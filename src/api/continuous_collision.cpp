@@ -107,6 +107,7 @@ void answerCurved(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
       motion2(o2, "o2", options.toc_err, options.num_threads);
   RequestFilter filter(request, o1.geometry(), o2.geometry(), false);
   requireProvenRange(motion1, motion2);
+  requireLeastSize(motion1, motion2);
   options.filter = filter.prepare();
   QueryAnswer answer = filteredAnswerOf(filter, [&] {
     return queryCurvedContacts(motion1.body(), motion2.body(), options);

@@ -138,6 +138,8 @@ class DistanceQuery {
     const PreparedMotion &motion1 = first == 0 ? bounded : other,
                          &motion2 = first == 0 ? other : bounded;
     requireProvenRange(motion1, motion2);
+    if (!motion1.body().shape() || !motion2.body().shape())
+      requireLeastSize(motion1, motion2);
     return answerOf([&] { return search(motion1.body(), motion2.body()); });
   }
 

@@ -209,6 +209,11 @@ double PreparedMotion::size() const {
 void PreparedMotion::requireInRange(const std::string& name) const {
   if (size() < (shape_ ? kMostShapeSize : kMostPathSize)) return;
   if (mesh_) requireFinite(mesh_->instance().frames, name);
+  // Boxes of our tree are in float, and squares of lengths in FCL's have a limit too.
+  if (mesh_ && !(body_->radius() < kMostPathSize))
+    throw Exception(name + ": the mesh has coordinates beyond " +
+                    (mesh_->instance().tree ? "2^127" : "2^150") +
+                    ". Use larger units of length");
   throw Exception(name + ": its path has coordinates beyond " +
                   (shape_ ? "2^500" : "2^200") +
                   ". Use larger units of length or a smaller translation");

@@ -20,6 +20,9 @@ using deformable::PreparedMotion;
 /// that a direction may be far from the best, or round to 0: such a pair can be reported
 /// early, never late.)
 constexpr double kMostSize = 0x1p160, kLeastSize = 0x1p-140;
+/// The square of such a size, and of a length 2^-11 of it, is a normal number. The boxes
+/// of FCL's tree are made from such squares.
+constexpr double kLeastProvenSize = 0x1p-500;
 
 template <typename S>
 double largestLength(const MovingGeometry<S>& o, const PreparedMotion& motion) {
@@ -49,6 +52,14 @@ void requireProvenRange(const PreparedMotion& motion1, const PreparedMotion& mot
         "units");
 }
 
+void requireLeastSize(const PreparedMotion& motion1, const PreparedMotion& motion2) {
+  const double size = motion1.size() + motion2.size();
+  if (size > 0 && size < kLeastProvenSize)
+    throw Exception(
+        "o1 and o2: with their paths they have coordinates below 2^-500. Use smaller "
+        "units");
+}
+
 template <typename S>
 double scaleOf(const MovingGeometry<S>& o1, const PreparedMotion& motion1,
                const MovingGeometry<S>& o2, const PreparedMotion& motion2,
@@ -57,6 +68,7 @@ double scaleOf(const MovingGeometry<S>& o1, const PreparedMotion& motion1,
   if (size >= kLeastSize && size <= kMostSize) return 1;
   if (!canBeScaled(o1, motion1) || !canBeScaled(o2, motion2)) {
     requireProvenRange(motion1, motion2);
+    requireLeastSize(motion1, motion2);
     return 1;
   }
   if (size < kLeastSize)

@@ -15,7 +15,7 @@ namespace detail {
 /// be multiplied, so that products of lengths are in the range of doubles; 1 as a rule.
 /// @param motion1, motion2  prepared without a scale
 /// (Other bodies, and paths of motions of the program, are not scaled.)
-/// @throws fcl::Exception  as requireProvenRange(), where they are not scaled
+/// @throws fcl::Exception  as the two functions below, where they are not scaled
 template <typename S>
 double scaleOf(const MovingGeometry<S>& o1, const deformable::PreparedMotion& motion1,
                const MovingGeometry<S>& o2, const deformable::PreparedMotion& motion2,
@@ -36,6 +36,12 @@ MovingGeometry<S> scaledPath(const MovingGeometry<S>& o, double factor);
 /// @throws fcl::Exception
 void requireProvenRange(const deformable::PreparedMotion& motion1,
                         const deformable::PreparedMotion& motion2);
+
+/// @brief Refuses two bodies that are so small that squares of lengths underflow. Boxes
+/// leave out triangles then, also those that FCL's tree has.
+/// @throws fcl::Exception
+void requireLeastSize(const deformable::PreparedMotion& motion1,
+                      const deformable::PreparedMotion& motion2);
 
 }  // namespace detail
 }  // namespace fcl

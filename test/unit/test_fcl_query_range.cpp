@@ -214,6 +214,58 @@ TEST(QueryRange, OtherBodiesHaveTheSameTimeOrAreRefused) {
   EXPECT_GT(compared, 100);
 }
 
+/// Without bounds on squares of lengths, boxes leave out triangles: contacts would be
+/// missed.
+TEST(QueryRange, TheLeastBodiesAreRightOrRefused) {
+  Random random(9);
+  int refused = 0, compared = 0;
+  for (const char* a : {"mesh", "cloth", "octree"})
+    for (const char* b : {"mesh", "cloth", "octree", "sphere", "box", "plane"})
+      for (int i = 0; i < rounds(6); ++i) {
+        auto motion_a = randomMotion<double>(random);
+        const auto motion_b = randomMotion<double>(random);
+        if (i % 2 == 0) motion_a.end.linear() = motion_a.begin.linear();
+        const double distance = i % 3 == 0 ? .05 : 0;
+        const auto at = [&](double s) {
+          return timeOf<double>(geometryOf(a, s), motion_a, geometryOf(b, s), motion_b, s,
+                                CCDM_LINEAR, distance);
+        };
+        const double expected = at(1);
+        for (const int exponent : {-500, -502, -505, -520, -540, -560, -700, -1000}) {
+          const double time = at(std::ldexp(1, exponent));
+          if (time == kRefused) {
+            ++refused;
+            EXPECT_LT(exponent, -500) << a << ", " << b;
+          } else {
+            ++compared;
+            EXPECT_LE(time, expected + 1e-9)
+                << a << ", " << b << ", times 2^" << exponent;
+          }
+        }
+      }
+  EXPECT_GT(refused, rounds(6) * 60);
+  EXPECT_GT(compared, rounds(6) * 18);
+}
+
+TEST(QueryRange, ErrorsTellTheLimit) {
+  const auto error = [](const std::string& kind, int exponent) {
+    const double s = std::ldexp(1, exponent);
+    const auto mesh = geometryOf(kind, s), ball = shapeOf<double>("sphere", s);
+    const auto still = Transform3<double>::Identity();
+    return errorOf([&] {
+      ContinuousContactRequest<double> request;
+      ContinuousContactResult<double> result;
+      continuousCollide(mesh.get(), still, still, ball.get(), still, still, request,
+                        result);
+    });
+  };
+  expectMessage(error("mesh", 155), "o1: the mesh has coordinates beyond 2^150");
+  expectMessage(error("cloth", 130), "o1: the mesh has coordinates beyond 2^127");
+  expectMessage(error("mesh", -600), "coordinates below 2^-500");
+  EXPECT_EQ(error("mesh", 140), "");
+  EXPECT_EQ(error("cloth", 120), "");
+}
+
 TEST(QueryRange, SafeDisplacementsAreMultiplied) {
   Random random(9);
   for (int round = 0; round < rounds(30); ++round) {
