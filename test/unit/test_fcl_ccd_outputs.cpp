@@ -145,6 +145,54 @@ TEST_F(CcdOutputs, ARunWhoseOutputIsTakenAwayFails) {
     }
 }
 
+// What is cut ends in a part of a row. No row of the next step goes on with it.
+TEST_F(CcdOutputs, ARunWhoseOutputIsCutIsResumed) {
+  writeFrames(6);
+  const std::string files = " --contacts c.csv --steps s.jsonl";
+  const auto outputs = [this] {
+    return std::make_pair(readText(path("c.csv")), readText(path("s.jsonl")));
+  };
+  EXPECT_EQ(run("run f" + files).exit_code, 0);
+  const auto whole = outputs();
+  for (const std::string name : {"c.csv", "s.jsonl"})
+    for (const std::uintmax_t cut : {1, 4, 20, 90}) {
+      SCOPED_TRACE(name + " without " + std::to_string(cut) + " bytes");
+      for (const char* old : {"f", "c.csv", "s.jsonl"}) fs::remove_all(path(old));
+      writeFrames(5);
+      const pid_t child =
+          startWaitingRun({"--contacts", "c.csv", "--steps", "s.jsonl"}, 4);
+      awaitThat([&] { return numLines("s.jsonl") == 5; });
+      fs::resize_file(path(name), fs::file_size(path(name)) - cut);
+      writeFrame(5);
+      EXPECT_EQ(exitCodeOf(child), 4);
+      EXPECT_EQ(run("run f" + files + " --resume").exit_code, 0);
+      EXPECT_EQ(outputs(), whole);
+    }
+}
+
+// A word that is whole stays wrong, whatever comes behind it.
+TEST_F(CcdOutputs, AFrameWithAWrongWordIsNotHalfWritten) {
+  fs::create_directory(path("g"));
+  for (int frame = 0; frame < 4; ++frame)
+    writeText(path("g/tip" + std::to_string(frame) + ".obj"),
+              toObj(floorAndTip(1 - .1 * frame)));
+  const std::string good = readText(path("g/tip3.obj"));
+  const std::size_t line = good.find("v ");
+  for (const std::string word : {"nan", "x", "1e999"}) {
+    SCOPED_TRACE(word);
+    const std::string wrong =
+        good.substr(0, line) + "v 0 " + word + " 0\n" + good.substr(line);
+    writeText(path("g/tip3.obj"), wrong);
+    const Outcome refused = run("run g --contacts c.csv");
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_TRUE(contains(refused.err, "'" + word + "' is not")) << refused.err;
+    EXPECT_EQ(run("run g --follow --end 3").exit_code, 2);
+    // Cut in this word it may become a right one.
+    writeText(path("g/tip3.obj"), wrong.substr(0, line + 4 + word.size()));
+    EXPECT_EQ(run("run g --contacts c.csv").exit_code, 6);
+  }
+}
+
 // Also if it is noticed only at the end.
 TEST_F(CcdOutputs, AnOutputThatIsGoneAtTheEndFails) {
   writeFrames(5);

@@ -217,6 +217,7 @@ TEST_F(CcdReaders, StlAsOthersWriteIt) {
   for (char& c : upper) c = static_cast<char>(std::toupper(c));
   for (const std::string& text : std::vector<std::string>{
            plain, several, upper, replaced(plain, "endsolid one", "endsolidone"),
+           replaced(plain, "solid one", "solidone"),
            replaced(replaced(plain, "endl", "end l"), "ends", "end s"),
            replaced(plain, "endfacet", "end facet"),
            replaced(plain, "normal 0 0 1", "normal nan nan -nan(ind)"),

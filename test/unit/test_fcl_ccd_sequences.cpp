@@ -304,7 +304,7 @@ TEST_F(CcdSequence, ResumeRefusesWhatAnotherRunWrote) {
   expectFailure("run f --resume --steps n.jsonl", "is not step 0");
   // Lines of an older form: with another head, and with this one.
   const std::string without = ". Leave out --resume to overwrite";
-  for (const std::string part : {"\"format\":3,", ",\"crossing\":0", "\"vf\":0"}) {
+  for (const std::string part : {"\"format\":4,", ",\"crossing\":0", "\"vf\":0"}) {
     std::string old = steps;
     const std::size_t at = old.find(part);
     ASSERT_NE(at, std::string::npos) << part;

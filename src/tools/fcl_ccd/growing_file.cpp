@@ -46,6 +46,8 @@ GrowingFile::~GrowingFile() {
 
 void GrowingFile::append(std::string_view bytes) {
   assert(file_ >= 0 && committed_ <= size_);
+  // A line that another program has cut would go on with this text.
+  if (size_ == committed_) requireIntact();
   while (!bytes.empty()) {
     const ssize_t written = write(file_, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
@@ -82,10 +84,13 @@ void GrowingFile::commit() {
 void GrowingFile::rollBack() noexcept {
   if (!is_regular_ || size_ == committed_ || file_ < 0) return;
   struct stat status {};
-  // What another program has cut must not become longer again.
-  if (fstat(file_, &status) != 0 || static_cast<std::uint64_t>(status.st_size) != size_)
-    return;
-  if (ftruncate(file_, static_cast<off_t>(committed_)) == 0) size_ = committed_;
+  if (fstat(file_, &status) != 0) return;
+  const auto now = static_cast<std::uint64_t>(status.st_size), added = size_ - committed_;
+  // A file that another program has cut ends with what was appended behind the cut. It
+  // must not become longer again, and one that was made longer stays.
+  if (now > size_ || now < added) return;
+  if (ftruncate(file_, static_cast<off_t>(now - added)) == 0 && now == size_)
+    size_ = committed_;
 }
 
 void GrowingFile::finish() {

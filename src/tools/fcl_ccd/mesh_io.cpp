@@ -13,6 +13,7 @@
 #include "binary_ply.h"
 #include "file_bytes.h"
 #include "mesh_readers.h"
+#include "text_scan.h"
 
 namespace fcl_ccd {
 namespace {
@@ -80,6 +81,8 @@ PolygonMesh namingFile(const std::string& path, Read read) {
     return read();
   } catch (const std::bad_alloc&) {
     throw std::runtime_error(path + ": out of memory");
+  } catch (const BadWord& error) {
+    throw BadWord(path + ": " + error.what(), error.word());
   } catch (const std::exception& error) {
     throw std::runtime_error(path + ": " + error.what());
   }

@@ -68,7 +68,7 @@ class ObjReader {
                                " is geometry that is not read; export " +
                                "the mesh as polygons");
     else if (!isOneOf(kIgnored, keyword))
-      throw std::runtime_error(quoted(keyword) + " is not an OBJ statement");
+      throw BadWord(quoted(keyword) + " is not an OBJ statement", keyword);
     else
       while (cursor_.skipBlanks()) cursor_.takeWord();
   }

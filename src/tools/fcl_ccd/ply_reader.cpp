@@ -55,7 +55,7 @@ class AsciiBody {
       const auto parsed = parseDecimal(word.data(), end, value);
       if ((parsed.ec != std::errc() || parsed.ptr != end) &&
           classifyNumber(word) == NumberToken::kNotANumber)
-        throw std::runtime_error(quoted(word) + " is not a number");
+        throw BadWord(quoted(word) + " is not a number", word);
     }
   }
 

@@ -65,7 +65,7 @@ std::string stepsHead(const RunOptions& options, std::size_t num_frames) {
   constexpr const char* kQueries[] = {"all", "first", "any"};
   // The form of the lines. A higher one for each change: lines of another form cannot be
   // continued. (1, without crossings in "contacts", was not written.)
-  constexpr int kFormat = 3;
+  constexpr int kFormat = 4;
   Json head = {{"fcl_ccd", FCL_CCD_VERSION},
                {"format", kFormat},
                {"query", kQueries[static_cast<int>(options.settings.query)]},

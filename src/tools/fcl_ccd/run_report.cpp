@@ -61,7 +61,7 @@ Json findings(const StepResult& result) {
   Json found = nullptr;
   if (earliest != nullptr) {
     found = toJson(*earliest);
-    found["as_early"] = asEarlyAs(*earliest, result);
+    if (!result.is_any) found["as_early"] = asEarlyAs(*earliest, result);
   }
   Json findings = {{"initially_crossing", crossing ? Json(*crossing) : Json(kUndecided)},
                    {"first", result.isFirstDecided() ? found : Json(kUndecided)}};
@@ -199,8 +199,9 @@ RunSummary summaryOf(const Json& step_line) {
   const bool is_decided = first != kUndecided;
   const Json& found = is_decided ? first : step_line.at("any");
   if (!found.is_null())
-    summary.first = FirstContact{step_line.at("step"), step_line.at("files"),
-                                 contactOf(found), found.at("as_early"), is_decided};
+    summary.first =
+        FirstContact{step_line.at("step"), step_line.at("files"), contactOf(found),
+                     found.value("as_early", std::size_t{0}), is_decided};
   return summary;
 }
 
@@ -228,7 +229,7 @@ Json toJson(const RunSummary& summary) {
   if (summary.first) {
     found = {{"step", summary.first->step}, {"files", namesInJson(summary.first->files)}};
     found.update(toJson(summary.first->contact));
-    found["as_early"] = summary.first->as_early;
+    if (!summary.is_any) found["as_early"] = summary.first->as_early;
   }
   const bool is_decided = !summary.first || summary.first->is_decided;
   Json json = {{"steps", summary.steps},

@@ -118,13 +118,14 @@ class AsciiStl {
            });
   }
 
-  /// Takes a statement's word: also `end loop` for `endloop`, and `endsolidNAME`.
+  /// Takes a statement's word: also `end loop` for `endloop`, `solidNAME` and
+  /// `endsolidNAME`.
   Word takeStatement() {
     std::string_view word = cursor_.takeWord();
     if (isWord(word, "vertex")) return Word::kVertex;
     if (isWord(word, "facet")) return Word::kFacet;
     if (isWord(word, "outer")) return Word::kOuter;
-    if (isWord(word, "solid")) return Word::kSolid;
+    if (beginsWith(word, "solid")) return Word::kSolid;
     const std::string_view whole = word;
     if (isWord(word, "end") && cursor_.skipBlanks())
       word = cursor_.takeWord();
@@ -135,7 +136,7 @@ class AsciiStl {
       if (isWord(word, "facet")) return Word::kEndFacet;
       if (beginsWith(word, "solid")) return Word::kEndSolid;
     }
-    throw std::runtime_error(quoted(whole) + " is not a word of STL");
+    throw BadWord(quoted(whole) + " is not a word of STL", whole);
   }
 
   void readStatement() {

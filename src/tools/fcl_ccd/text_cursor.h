@@ -169,8 +169,8 @@ class TextCursor {
     if (kComments && at != end_ && *at == '#' && at[-1] == '.') {
       const char* end = at;
       while (end != end_ && static_cast<unsigned char>(*end) > ' ') ++end;
-      throw std::runtime_error(quoted({at_, static_cast<std::size_t>(end - at_)}) +
-                               " is not finite");
+      const std::string_view word(at_, static_cast<std::size_t>(end - at_));
+      throw BadWord(quoted(word) + " is not finite", word);
     }
   }
 

@@ -113,13 +113,13 @@ Value requireNumber(std::string_view token) {
     case NumberToken::kFinite:
       break;
     case NumberToken::kNotFinite:
-      throw std::runtime_error(quoted(token) + " is not finite");
+      throw BadWord(quoted(token) + " is not finite", token);
     case NumberToken::kNotANumber:
-      throw std::runtime_error(quoted(token) + " is not a number");
+      throw BadWord(quoted(token) + " is not a number", token);
   }
   const Value value = parseInC<Value>(asInC(token));
   if (!std::isfinite(value))
-    throw std::runtime_error(quoted(token) + " does not fit its type");
+    throw BadWord(quoted(token) + " does not fit its type", token);
   return value;
 }
 template float requireNumber<float>(std::string_view);

@@ -25,6 +25,18 @@ bool takeToken(std::string_view& text, std::string_view& token);
 /// @brief All tokens of a line.
 void splitTokens(std::string_view line, std::vector<std::string_view>& tokens);
 
+/// @brief A word of a text that has no meaning where it stands. Only the last word of a
+/// text that another program is writing may become another one.
+class BadWord : public std::runtime_error {
+ public:
+  BadWord(const std::string& what, std::string_view word)
+      : std::runtime_error(what), word_(word) {}
+  const std::string& word() const { return word_; }
+
+ private:
+  std::string word_;
+};
+
 /// @brief The result of reading a token as a decimal number.
 enum class NumberToken {
   kFinite,
@@ -39,7 +51,7 @@ bool parseInteger(std::string_view token, long long& value);
 
 /// @brief The value of a token, rounded once to the nearest Value (float or double). An
 /// exponent may have the letter D of Fortran.
-/// @throws std::runtime_error if the token is not a finite number, or too large.
+/// @throws BadWord if the token is not a finite number, or too large.
 template <typename Value>
 Value requireNumber(std::string_view token);
 extern template float requireNumber<float>(std::string_view);
@@ -64,6 +76,8 @@ template <typename Read, typename Place>
 auto namingPlace(Place place, Read read) {
   try {
     return read();
+  } catch (const BadWord& error) {
+    throw BadWord(place() + ": " + error.what(), error.word());
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(place() + ": " + error.what());
   }
