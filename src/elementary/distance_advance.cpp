@@ -5,12 +5,10 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "elementary/accurate_nearest.h"
 #include "elementary/approach_speed.h"
 #include "elementary/following_direction.h"
-#include "elementary/least_length.h"
 #include "elementary/most_steps.h"
 #include "elementary/ordered_points.h"
 #include "elementary/scaled_points.h"
