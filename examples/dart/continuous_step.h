@@ -29,6 +29,7 @@
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/ellipsoid.h>
 #include <fcl/geometry/shape/sphere.h>
+#include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/continuous_collision.h>
 #include <fcl/narrowphase/continuous_contact.h>
 
@@ -93,9 +94,11 @@ class ContinuousStep {
     if (!way.moves()) return;
     way.share *= part;
     way.skeleton->setPositions(way.begin);
-    way.skeleton->integratePositions(way.share * world_->getTimeStep());
+    if (way.share > 0)
+      way.skeleton->integratePositions(way.share * world_->getTimeStep());
     for (Body& body : bodies_)
-      if (&ways_[body.way] == &way) body.end = body.node->getWorldTransform();
+      if (&ways_[body.way] == &way)
+        body.end = way.share > 0 ? body.node->getWorldTransform() : body.begin;
   }
 
   /// DART answers a contact in the step after the cut. A body whose way is cut again is
@@ -167,7 +170,12 @@ class ContinuousStep {
     fcl::continuousCollide(a.core.get(), a.begin, a.end, b.core.get(), b.begin, b.end,
                            request, result);
     contact = {result.time_of_contact, &a, &b};
-    return result.is_collide;
+    if (!result.is_collide || contact.time > 0) return result.is_collide;
+    // Cores that overlap at the beginning, where a scene begins so, are left to DART.
+    fcl::CollisionResultd overlap;
+    fcl::collide(a.core.get(), a.begin, b.core.get(), b.begin, fcl::CollisionRequestd(),
+                 overlap);
+    return !overlap.isCollision();
   }
 
   bool findFirst(Contact& first) const {

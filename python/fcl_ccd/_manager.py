@@ -54,6 +54,8 @@ class Pair(_arguments.Built):
     o2: Hashable
     result: Result
 
+    _is_self = False  # whether both are one object; no field
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ManagerResult(_arguments.Built):
@@ -327,10 +329,13 @@ class CollisionManager(_arguments.Built):
             min_approach_speed,
         )
         fields = self._ask(other, motion, name, request)
-        pairs = [
-            Pair(o1, o2, result_of(answer, query, enable_contact, _queried(read1, read2)))
-            for o1, o2, answer, read1, read2 in fields.pop("pairs")
-        ]
+        pairs = []
+        for o1, o2, answer, read1, read2 in fields.pop("pairs"):
+            queried = _queried(read1, read2)
+            pair = Pair(o1, o2, result_of(answer, query, enable_contact, queried))
+            if read1 is read2:
+                object.__setattr__(pair, "_is_self", True)
+            pairs.append(pair)
         return ManagerResult(pairs=pairs, **fields)
 
     def distance(

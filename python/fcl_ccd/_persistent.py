@@ -87,6 +87,12 @@ class PersistentPairs(_arguments.Built):
         pairs: List[PersistentPair] = []
         keys: Dict[int, NDArray[np.int64]] = {}
         next_id = self._next_id
+        names = [(found.o1, found.o2) for found in result.pairs]
+        if len(set(names)) < len(names):
+            raise ValueError(
+                "a pair of names is twice in the result. Give objects that are not registered "
+                "a name, and the answer of one query"
+            )
         for found in result.pairs:
             now = _keys_of(found)
             old = before.pop((found.o1, found.o2), None)
@@ -124,7 +130,7 @@ def _keys_of(pair: Pair) -> NDArray[np.int64]:
     contacts = pair.result.contacts
     kind, side = contacts["kind"].astype(np.int64), contacts["first_on_o1"]
     ids = contacts["vertices"].astype(np.int64)
-    is_self = pair.o1 is not None and pair.o1 == pair.o2
+    is_self = pair._is_self
     keys = np.empty((len(contacts), 9), np.int64)
     keys[:, 0] = np.minimum(kind, Kind.VERTEX_SHAPE)
     keys[:, 1], keys[:, 2] = contacts["part1"], contacts["part2"]

@@ -295,7 +295,7 @@ def name_of(pair, contact):
         return "shape", int(contact["b1"]), int(contact["b2"])
     if kind == fcl_ccd.Kind.EDGE_EDGE:
         edges = [tuple(sorted(ids[:2])), tuple(sorted(ids[2:4]))]
-        return kind, *(sorted(edges) if pair.o1 == pair.o2 else edges)
+        return kind, *(sorted(edges) if pair.o1 == "cloth" == pair.o2 else edges)
     side = bool(contact["first_on_o1"])
     if kind == fcl_ccd.Kind.CROSSING:
         return kind, side, tuple(sorted(ids[:2])), tuple(sorted(ids[2:]))
@@ -349,6 +349,32 @@ def test_persistent_pairs_of_random_steps():
     tracked.clear()
     tracked.update(result)
     assert all(pair.is_new for pair in tracked.pairs) and not tracked.removed
+
+
+def test_persistent_pairs_of_two_managers_with_the_same_names():
+    first, second = fcl_ccd.CollisionManager(), fcl_ccd.CollisionManager()
+    first.register(0, BALL)
+    second.register(0, BALL, (pose((0.3, 0, 0)), pose((0.3, 0.02, 0))))
+    tracked = fcl_ccd.PersistentPairs()
+    before = first.collide(second)
+    tracked.update(before)
+    second.update({0: (pose((-0.3, 0, 0)), pose((-0.3, 0.02, 0)))})
+    after = first.collide(second)
+    tracked.update(after)
+    names = [name_of(before.pairs[0], c) for c in before.pairs[0].result.contacts]
+    expected = [
+        names.index(name) if name in names else -1
+        for name in (name_of(after.pairs[0], c) for c in after.pairs[0].result.contacts)
+    ]
+    assert tracked.pairs[0].previous.tolist() == expected
+    twice = fcl_ccd.CollisionManager()
+    for name in range(2):
+        twice.register(name, BALL)
+    result = twice.collide(BALL)
+    tracked.update(result)
+    result.pairs.append(result.pairs[0])
+    with pytest.raises(ValueError, match="twice in the result"):
+        tracked.update(result)
 
 
 def test_changes_during_a_query_are_refused():

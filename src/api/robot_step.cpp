@@ -7,6 +7,7 @@
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "api/meeting_query.h"
 #include "base/default_floating_point.h"
@@ -39,11 +40,14 @@ class RobotPart {
   /// Its boxes in its own frame. Planes and halfspaces have none.
   bool has_boxes;
   deformable::BodyBox box[2];
-  /// Of a DeformableBVHModel, when it was read.
-  const DeformableMesh* model;
-  std::uint64_t revision;
+  /// Its DeformableBVHModels, and their revisions when they were read.
+  std::vector<std::pair<const DeformableMesh*, std::uint64_t>> models;
 
-  bool isUpToDate() const { return !model || *model->revision() == revision; }
+  bool isUpToDate() const {
+    return std::all_of(models.begin(), models.end(), [](const auto& model) {
+      return *model.first->revision() == model.second;
+    });
+  }
 };
 
 namespace {
@@ -94,8 +98,9 @@ RobotPartPtr<S> makeRobotPart(const JointTreePtr& tree, int link,
     const BoundedBody body = boundedBodyOf(placed, part->name.c_str());
     std::copy(body.box, body.box + 2, part->box);
   }
-  part->model = placed.model();
-  part->revision = part->model ? part->model->revision()->load() : 0;
+  visitModels(placed, [&part](const DeformableMesh& model) {
+    part->models.emplace_back(&model, model.revision()->load());
+  });
   return part;
 }
 

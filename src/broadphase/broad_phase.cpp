@@ -79,7 +79,7 @@ BroadPhase::SlotNumber BroadPhase::newSlot(void* object) {
   at(i).filter = ObjectFilter();
   at(i).self = false;
   at(i).margin = 0;
-  at(i).source = -1;
+  at(i).source = kNoSource;
   return i;
 }
 
@@ -125,21 +125,41 @@ void BroadPhase::leave(SlotNumber i, Mobility mobility) {
   members.pop_back();
 }
 
-void BroadPhase::setSource(SlotNumber i, const Revision* revision) {
-  std::ptrdiff_t& source = at(i).source;
-  if (revision) {
-    if (source < 0) {
-      source = static_cast<std::ptrdiff_t>(sources_.size());
-      sources_.emplace_back();
+void BroadPhase::addSource(SlotNumber i, const Revision& revision) {
+  sources_.push_back({revision, revision->load(), i, at(i).source});
+  at(i).source = sources_.size() - 1;
+}
+
+void BroadPhase::removeSources(SlotNumber i) {
+  while (at(i).source != kNoSource) {
+    const std::size_t gone = at(i).source, last = sources_.size() - 1;
+    assert(sources_[gone].slot == i);
+    at(i).source = sources_[gone].next;
+    if (gone != last) {
+      // Who refers to the last one refers to its new place.
+      std::size_t* reference = &at(sources_[last].slot).source;
+      while (*reference != last) reference = &sources_[*reference].next;
+      *reference = gone;
+      sources_[gone] = std::move(sources_[last]);
     }
-    sources_[static_cast<std::size_t>(source)] = {*revision, (*revision)->load(), i};
-  } else if (source >= 0) {
-    assert(sources_[static_cast<std::size_t>(source)].slot == i);
-    sources_[static_cast<std::size_t>(source)] = sources_.back();
-    at(sources_.back().slot).source = source;
     sources_.pop_back();
-    source = -1;
   }
+}
+
+void BroadPhase::setSources(SlotNumber i, const BoundsList& bounds,
+                            const BoundsList::Item& item) {
+  const std::size_t source = at(i).source;
+  const auto revision = [&](std::size_t k) -> const Revision& {
+    return *bounds.revisions[item.first_revision + k];
+  };
+  if (item.num_revisions == 1 && source != kNoSource &&
+      sources_[source].next == kNoSource) {
+    sources_[source].revision = revision(0);
+    sources_[source].read = revision(0)->load();
+    return;
+  }
+  removeSources(i);
+  for (std::size_t k = 0; k < item.num_revisions; ++k) addSource(i, revision(k));
 }
 
 const void* BroadPhase::findChanged(const void* except) const {
@@ -209,7 +229,7 @@ void BroadPhase::change(const std::vector<SlotNumber>& slots, const BoundsList& 
     }
     const Mobility before = slot.mobility;
     setBounds(bounds.at(i), slot);
-    setSource(number, bounds.items[i].revision);
+    setSources(number, bounds, bounds.items[i]);
     if (slot.rests) markStale(number);
     if (are_new || slot.mobility != before) {
       if (!are_new) leave(number, before);
@@ -244,7 +264,7 @@ void BroadPhase::remove(const void* object) {
   if (at(i).rests) markStale(i);
   leave(i, at(i).mobility);
   if (at(i).mobility != kUnbounded) tree_[at(i).mobility].remove(i);
-  setSource(i, nullptr);
+  removeSources(i);
   at(i).object = nullptr;
   at(i).flat.reset();
   free_.push_back(i);

@@ -42,13 +42,21 @@ struct BoundsList {
     std::size_t first;
     int num_spans;
     std::size_t flat{kNoFlat};
-    /// Of what was read. Null: it does not tell when it changes.
-    const Revision* revision{nullptr};
+    /// In `revisions`: those of what was read. None: it does not tell when it changes.
+    std::size_t first_revision{0};
+    std::size_t num_revisions{0};
   };
   std::vector<HalfAxisBox> boxes;
   std::vector<MovingFlat> flats;
   std::vector<Item> items;
+  std::vector<const Revision*> revisions;
 
+  /// @brief Adds a revision to the last item.
+  void addRevision(const Revision& revision) {
+    Item& item = items.back();
+    if (item.num_revisions++ == 0) item.first_revision = revisions.size();
+    revisions.push_back(&revision);
+  }
   MovingBounds at(std::size_t i) const {
     assert(i < items.size());
     const Item& item = items[i];
@@ -61,6 +69,7 @@ struct BoundsList {
     boxes.clear();
     flats.clear();
     items.clear();
+    revisions.clear();
   }
 };
 
@@ -174,6 +183,7 @@ class BroadPhase {
   class NearestSearch;
 
   using SlotNumber = std::int32_t;
+  static constexpr std::size_t kNoSource = ~std::size_t{0};
   enum Mobility { kMoving, kResting, kUnbounded, kNumMobilities };
 
   struct Slot {
@@ -186,8 +196,8 @@ class BroadPhase {
     Mobility mobility{kUnbounded};
     /// In members_[mobility].
     std::size_t member{0};
-    /// In sources_, or -1.
-    std::ptrdiff_t source{-1};
+    /// The last one in sources_, or kNoSource.
+    std::size_t source{kNoSource};
     double margin{0};
     /// Of the bounds, with the margin around it.
     LinearBox box;
@@ -200,11 +210,14 @@ class BroadPhase {
     }
   };
   using SlotPair = std::pair<SlotNumber, SlotNumber>;
-  /// What an object was read from, if that says when it changes.
+  /// What an object was read from, if that says when it changes. A compound has one for
+  /// each mesh.
   struct Source {
     Revision revision;
     std::uint64_t read;
     SlotNumber slot;
+    /// Another one of the slot, or kNoSource.
+    std::size_t next;
   };
   /// Two objects that meet, with all that sorting needs.
   struct Found {
@@ -232,7 +245,9 @@ class BroadPhase {
   static void setBox(Slot& slot);
   void join(SlotNumber i);
   void leave(SlotNumber i, Mobility mobility);
-  void setSource(SlotNumber i, const Revision* revision);
+  void addSource(SlotNumber i, const Revision& revision);
+  void removeSources(SlotNumber i);
+  void setSources(SlotNumber i, const BoundsList& bounds, const BoundsList::Item& item);
   void change(const std::vector<SlotNumber>& slots, const BoundsList& bounds,
               bool are_new);
   void buildTree(Mobility mobility);

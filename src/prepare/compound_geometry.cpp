@@ -94,12 +94,6 @@ std::string nameOfPart(std::size_t number) {
 }
 
 template <typename S>
-std::uint64_t revisionOf(const CollisionGeometry<S>& part) {
-  const DeformableMesh* model = deformable::meshClassOf(part).model;
-  return model ? model->revision()->load() : 0;
-}
-
-template <typename S>
 typename CompoundParts<S>::Part readPart(
     const std::shared_ptr<const CollisionGeometry<S>>& geometry, const Pose& offset,
     const std::string& name) {
@@ -114,8 +108,10 @@ typename CompoundParts<S>::Part readPart(
   if (!at_rest.isKnown())
     throw Exception(name + " is " + kindOf(*geometry) +
                     ", not a triangle mesh, a shape or an octree. Give one of these");
+  const DeformableMesh* model = deformable::meshClassOf(*geometry).model;
   typename CompoundParts<S>::Part part{
-      geometry, offset, isBounded(at_rest), {}, revisionOf(*geometry)};
+      geometry, offset, isBounded(at_rest),
+      {},       model,  model ? model->revision()->load() : 0};
   if (part.has_box)
     part.box = placed(boundedBodyOf(at_rest, name.c_str()).box[0], offset);
   else
@@ -161,7 +157,8 @@ void requireParts(const CompoundParts<S>& compound, const std::string& name) {
     const auto& part = compound.parts[i];
     if (part.geometry->getObjectType() != OT_BVH) continue;
     requireRigidPart(*part.geometry, nameOfPart(i) + ", " + name + ",");
-    if (revisionOf(*part.geometry) != part.revision)
+    const DeformableMesh* model = deformable::meshClassOf(*part.geometry).model;
+    if (model != part.model || (model && *model->revision() != part.revision))
       throw Exception(nameOfPart(i) + ", " + name +
                       ", is a mesh that was changed after the compound had read it. Call "
                       "update() of the compound");

@@ -14,6 +14,8 @@
 namespace fcl {
 namespace detail {
 
+class DeformableMesh;
+
 /// @brief The parts of a compound, as they were read.
 template <typename S>
 struct CompoundParts {
@@ -24,7 +26,8 @@ struct CompoundParts {
     /// In the frame of the compound. Planes and halfspaces have none.
     bool has_box;
     deformable::BodyBox box;
-    /// Of a DeformableBVHModel; 0 for others.
+    /// A DeformableBVHModel, and its revision when it was read; null for others.
+    const DeformableMesh* model;
     std::uint64_t revision;
   };
   std::vector<Part> parts;

@@ -294,7 +294,9 @@ void appendBounds(const MovingGeometry<S>& moving, BoundsList& list) {
     appendFlat(placed, list);
   else
     appendUnbounded(list);
-  if (placed.model()) list.items.back().revision = &placed.model()->revision();
+  visitModels(placed, [&list](const DeformableMesh& model) {
+    list.addRevision(model.revision());
+  });
 }
 
 #define FCL_CCD_INSTANTIATE(S)                                               \

@@ -293,6 +293,15 @@ auto answerOf(Query&& query) {
   }
 }
 
+/// Calls visit for the DeformableBVHModel of an object, or for those of a compound.
+template <typename S, typename Visit>
+void visitModels(const PlacedGeometry<S>& placed, const Visit& visit) {
+  if (placed.model()) visit(*placed.model());
+  if (!placed.compound()) return;
+  for (const auto& part : placed.compound()->parts)
+    if (part.model) visit(*part.model);
+}
+
 }  // namespace detail
 }  // namespace fcl
 

@@ -64,13 +64,15 @@ template <typename S>
 double scaleOf(const MovingGeometry<S>& o1, const PreparedMotion& motion1,
                const MovingGeometry<S>& o2, const PreparedMotion& motion2,
                double distance) {
-  double size = motion1.size() + motion2.size() + distance;
-  if (size >= kLeastSize && size <= kMostSize) return 1;
+  const double bodies = motion1.size() + motion2.size();
+  double size = bodies + distance;
+  if (bodies >= kLeastSize && size <= kMostSize) return 1;
   if (!canBeScaled(o1, motion1) || !canBeScaled(o2, motion2)) {
     requireProvenRange(motion1, motion2);
     requireLeastSize(motion1, motion2);
     return 1;
   }
+  if (size >= kLeastSize && size <= kMostSize) return 1;
   if (size < kLeastSize)
     size = std::max({largestLength(o1, motion1), largestLength(o2, motion2), distance});
   if (!(size > 0)) return 1;

@@ -284,6 +284,63 @@ TEST(FCL_MANAGER_CHANGES, ACompoundNoticesForgottenUpdates) {
   EXPECT_EQ(errorOf(ask), "");
 }
 
+/// Also where no box meets that of the compound; and if only one of the two is told.
+TEST(FCL_MANAGER_CHANGES, AManagerNoticesChangesOfPartsOfCompounds) {
+  constexpr int kParts = 3;
+  Random random(8);
+  for (int round = 0; round < rounds(30); ++round) {
+    Sheets scene(2);
+    std::vector<std::shared_ptr<Model>> models;
+    std::vector<std::shared_ptr<CompoundGeometry<double>>> compounds;
+    std::vector<std::unique_ptr<Object>> objects;
+    JointChain chain;
+    chain.addRevolute(Transform3<double>::Identity(), V::UnitZ());
+    CollisionRobot<double> robot(chain);
+    for (int k = 0; k < 3; ++k) {
+      compounds.push_back(std::make_shared<CompoundGeometry<double>>());
+      for (int i = 0; i < kParts; ++i) {
+        models.push_back(makeModel<Model>(Sheets::sheet(std::size_t(5 + k))));
+        compounds[k]->addPart(models.back());
+      }
+      compounds[k]->addPart(std::make_shared<Sphere<double>>(.1));
+      objects.push_back(makeObject(compounds[k], translation(V::Zero(), V::Zero())));
+      scene.manager.registerObject(objects[k].get());
+    }
+    robot.attach(0, compounds[0]);
+    const auto edge = [&] {
+      RobotEdgeResult<double> result;
+      robot.checkEdge({0}, {.1}, nullptr, Request(), result);
+    };
+    EXPECT_EQ(scene.error(), "");
+    EXPECT_EQ(errorOf(edge), "");
+    if (random.index(2) == 0) {
+      // Its sources go, and those of others stay.
+      scene.manager.unregisterObject(objects[1].get());
+      scene.manager.registerObject(objects[1].get());
+    }
+    const std::size_t changed = random.index(3), part = random.index(kParts);
+    const TestMesh other = Sheets::sheet(5 + changed, .1);
+    const double* frame = other.vertices[0].data();
+    ASSERT_EQ(models[changed * kParts + part]->updateFrames(frame, frame,
+                                                            other.vertices.size()),
+              BVH_OK);
+    std::vector<Object*> in_order;
+    scene.manager.getObjects(in_order);
+    const auto place =
+        std::find(in_order.begin(), in_order.end(), objects[changed].get());
+    const std::string name =
+        "object " + std::to_string(place - in_order.begin()) + ": its mesh was changed";
+    expectMessage(scene.error(), name);
+    EXPECT_EQ(errorOf(edge).empty(), changed != 0);
+    compounds[changed]->update();
+    expectMessage(scene.error(), name);
+    scene.manager.update(objects[changed].get());
+    EXPECT_EQ(scene.error(), "");
+    robot.update();
+    EXPECT_EQ(errorOf(edge), "");
+  }
+}
+
 /// A contact by what makes it the same in the next step, without the library's keys.
 std::string nameOf(const ContinuousContact<double>& c) {
   std::vector<std::string> sides;
@@ -435,33 +492,61 @@ TEST(FCL_PERSISTENT_PAIRS, ForgetsAnObject) {
   EXPECT_EQ(copy.pairs().size(), 3u);
 }
 
-/// In a self-collision no edge of a pair is the first one.
+/// In a self-collision no edge of a pair is the first one. Two objects may share a mesh.
 TEST(FCL_PERSISTENT_PAIRS, KeysDoNotDependOnOrder) {
-  const Sphere<double> one(1), two(1);
   ContinuousContact<double> contact;
   contact.kind = ContinuousContactKind::kEdgeEdge;
   contact.vertices = {{7, 3, 2, 9, -1}};
   ContinuousContact<double> turned = contact;
   turned.vertices = {{9, 2, 3, 7, -1}};
-  contact.o1 = contact.o2 = turned.o1 = turned.o2 = &one;
-  EXPECT_EQ(detail::contactKey(contact), detail::contactKey(turned));
-  contact.o2 = turned.o2 = &two;
-  EXPECT_NE(detail::contactKey(contact), detail::contactKey(turned));
+  const auto areSame = [&](bool is_self) {
+    return detail::contactKey(contact, is_self) == detail::contactKey(turned, is_self);
+  };
+  EXPECT_TRUE(areSame(true));
+  EXPECT_FALSE(areSame(false));
   turned.vertices = {{3, 7, 9, 2, -1}};
-  EXPECT_EQ(detail::contactKey(contact), detail::contactKey(turned));
+  EXPECT_TRUE(areSame(false));
   contact.kind = turned.kind = ContinuousContactKind::kVertexFace;
   contact.vertices = {{4, 1, 2, 3, -1}};
   turned.vertices = {{4, 3, 1, 2, -1}};
-  EXPECT_EQ(detail::contactKey(contact), detail::contactKey(turned));
+  EXPECT_TRUE(areSame(false));
   turned.first_on_o1 = false;
-  EXPECT_NE(detail::contactKey(contact), detail::contactKey(turned));
+  EXPECT_FALSE(areSame(false));
   contact.kind = ContinuousContactKind::kVertexShape;
   turned.kind = ContinuousContactKind::kFaceShape;
   turned.first_on_o1 = true;
   contact.b1 = turned.b1 = 5;
-  EXPECT_EQ(detail::contactKey(contact), detail::contactKey(turned));
+  EXPECT_TRUE(areSame(false));
   turned.b2 = (std::intptr_t{1} << 32) - 1;
-  EXPECT_NE(detail::contactKey(contact), detail::contactKey(turned));
+  EXPECT_FALSE(areSame(false));
+}
+
+TEST(FCL_PERSISTENT_PAIRS, ObjectsThatShareAMesh) {
+  const auto tip = makeModel<Model>(makeTetrahedronSoup(1, .1, 1, 3));
+  const auto one = makeObject(tip, translation(V::Zero(), V::Zero())),
+             two = makeObject(tip, translation(V::Zero(), V::Zero()));
+  ContinuousManagerResult<double> result;
+  result.pairs.emplace_back();
+  auto& pair = result.pairs[0];
+  pair.o1 = one.get();
+  pair.o2 = two.get();
+  ContinuousContact<double> contact;
+  contact.o1 = contact.o2 = tip.get();
+  contact.vertices = {{0, 1, 2, 3, -1}};
+  pair.result.contacts = {contact};
+  PersistentPairs<double> tracked;
+  tracked.update(result);
+  // The same ids, on the other side.
+  pair.result.contacts[0].first_on_o1 = false;
+  tracked.update(result);
+  EXPECT_EQ(tracked.pairs()[0].previous, std::vector<std::ptrdiff_t>{-1});
+  tracked.update(result);
+  EXPECT_EQ(tracked.pairs()[0].previous, std::vector<std::ptrdiff_t>{0});
+  // A pair that comes twice is refused, and nothing changes.
+  result.pairs.push_back(pair);
+  expectRefused([&] { tracked.update(result); }, "twice in the answer");
+  EXPECT_EQ(tracked.pairs().size(), 1u);
+  EXPECT_EQ(tracked.pairs()[0].num_steps, 3u);
 }
 
 /// Pairs come one by one, with the same answers as in the list.

@@ -176,12 +176,13 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
                const ContinuousContactRequest<S>& request,
                ContinuousManagerResult<S>& result) const;
 
-  /// @brief Gives the pairs in contact to `visit` instead of a list, so that the memory
-  /// of a query has a bound: with ContinuousQuery::kAll each pair comes once it is
-  /// tested, in the order of the box pairs, until visit returns true; with kFirst and
-  /// kAny the one pair. At any time the query keeps at most one pair, with n threads up
-  /// to 1,024. num_max_contacts bounds the contacts of each. The calls come from the
-  /// caller's thread. They must not change the manager.
+  /// @brief Gives the pairs in contact to `visit` instead of a list, so that contacts
+  /// need no memory: with ContinuousQuery::kAll each pair comes once it is tested, in the
+  /// order of the box pairs, until visit returns true; with kFirst and kAny the one pair.
+  /// At any time the query keeps the contacts of at most one pair, with several threads
+  /// of up to 1,024, and a list of all box pairs, 32 bytes each. num_max_contacts bounds
+  /// the contacts of a pair. The calls come from the caller's thread. They must not
+  /// change the manager.
   void collide(const ContinuousContactRequest<S>& request,
                const std::function<bool(ContinuousPairResult<S>&)>& visit) const;
 

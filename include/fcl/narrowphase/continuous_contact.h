@@ -164,12 +164,10 @@ struct ContinuousFilter {
 /// can at first. It makes the filters of objects: after a change make them anew.
 class ContinuousGroups {
  public:
-  static constexpr int kMost = 32;
-
   ContinuousGroups() { masks_.fill(~std::uint32_t{0}); }
 
   /// @brief Sets whether objects of two groups, or of one, can be in contact.
-  /// @throws fcl::Exception  a number is not from 0 to kMost - 1
+  /// @throws fcl::Exception  a number is not from 0 to 31
   void set(int group1, int group2, bool can_meet) {
     const std::uint32_t bit1 = bitOf(group1), bit2 = bitOf(group2);
     setBits(group1, bit2, can_meet);
@@ -189,8 +187,10 @@ class ContinuousGroups {
   }
 
  private:
+  enum { kNumGroups = 32 };
+
   static std::uint32_t bitOf(int group) {
-    if (group < 0 || group >= kMost)
+    if (group < 0 || group >= kNumGroups)
       throw Exception("there is no group " + std::to_string(group) +
                       ". Groups are numbered from 0 to 31");
     return std::uint32_t{1} << group;
@@ -201,7 +201,7 @@ class ContinuousGroups {
   }
 
   /// Of each group: the groups that it can be in contact with.
-  std::array<std::uint32_t, kMost> masks_;
+  std::array<std::uint32_t, kNumGroups> masks_;
 };
 
 /// @brief A continuous request that asks for contacts. Two fields of FCL's request act:

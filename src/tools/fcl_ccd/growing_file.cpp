@@ -85,12 +85,11 @@ void GrowingFile::rollBack() noexcept {
   if (!is_regular_ || size_ == committed_ || file_ < 0) return;
   struct stat status {};
   if (fstat(file_, &status) != 0) return;
-  const auto now = static_cast<std::uint64_t>(status.st_size), added = size_ - committed_;
-  // A file that another program has cut ends with what was appended behind the cut. It
-  // must not become longer again, and one that was made longer stays.
-  if (now > size_ || now < added) return;
-  if (ftruncate(file_, static_cast<off_t>(now - added)) == 0 && now == size_)
-    size_ = committed_;
+  // A file that another program has cut must not become longer again, and one that was
+  // made longer stays.
+  const auto now = static_cast<std::uint64_t>(status.st_size);
+  if (now > size_ || now <= committed_) return;
+  if (ftruncate(file_, static_cast<off_t>(committed_)) == 0) size_ = committed_;
 }
 
 void GrowingFile::finish() {

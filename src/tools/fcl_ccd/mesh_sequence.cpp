@@ -238,14 +238,15 @@ bool MeshSequence::mayBeginAFrame(std::size_t frame) const {
       !isMeshFormat(extensionOf(path)))
     return false;
   PolygonMesh mesh;
+  std::string bytes;
   try {
-    mesh = readPolygonMesh(path);
+    bytes = readRegularFile(path);
+    mesh = parsePolygonMesh(path, bytes);
   } catch (const BadWord& error) {
-    // A word that is whole stays what it is.
-    const std::string tail = tailOf(path);
+    // A word that is whole stays what it is. The file may have grown since it was read.
     const std::string& word = error.word();
-    return endsInALine(tail) && tail.size() >= word.size() &&
-           tail.compare(tail.size() - word.size(), word.size(), word) == 0;
+    return endsInALine(bytes) && bytes.size() >= word.size() &&
+           bytes.compare(bytes.size() - word.size(), word.size(), word) == 0;
   } catch (const std::runtime_error&) {
     return true;  // cut anywhere
   }
@@ -253,7 +254,7 @@ bool MeshSequence::mayBeginAFrame(std::size_t frame) const {
       mesh.free == free_)
     return true;
   const bool is_obj = extensionOf(path) == "obj";
-  const bool is_cut = endsInALine(tailOf(path));
+  const bool is_cut = endsInALine(bytes);
   // Other files tell how many vertices and faces they have, or have an end: only their
   // last number can be cut without being missed. (The last part of a strip may then have
   // a repeated corner, and be no face.)

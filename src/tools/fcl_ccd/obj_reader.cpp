@@ -133,7 +133,7 @@ class ObjReader {
     const std::string_view word = corner.substr(0, corner.find('/'));
     long long id = 0;
     if (!parseInteger(word, id))
-      throw std::runtime_error(quoted(corner) + " is not a vertex id");
+      throw BadWord(quoted(corner) + " is not a vertex id", corner);
     return id;
   }
 

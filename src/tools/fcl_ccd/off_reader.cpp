@@ -131,7 +131,7 @@ class OffReader {
     long long id = 0;
     const std::string_view word = cursor_.peekWord();
     if (!cursor_.takeInteger(id))
-      throw std::runtime_error(quoted(word) + " is not a vertex id");
+      throw BadWord(quoted(word) + " is not a vertex id", word);
     if (id < 0 || id >= num_vertices_)
       throw std::runtime_error("vertex id " + quoted(word) + " is out of range");
     return static_cast<int>(id);

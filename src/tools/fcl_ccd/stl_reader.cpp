@@ -136,7 +136,7 @@ class AsciiStl {
       if (isWord(word, "facet")) return Word::kEndFacet;
       if (beginsWith(word, "solid")) return Word::kEndSolid;
     }
-    throw BadWord(quoted(whole) + " is not a word of STL", whole);
+    throw BadWord(quoted(whole) + " is not a word of STL", word);
   }
 
   void readStatement() {

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "fcl/broadphase/detail/manager_result.h"
+#include "fcl/common/exception.h"
 
 namespace fcl {
 namespace detail {
@@ -24,10 +24,11 @@ using ContactKey = std::array<int, 9>;
 /// Two meshes: which kind of features, on which side, and their vertices. A shape or a
 /// cell has no vertices, and the nearest feature of a triangle changes from step to step:
 /// there the triangle and the cell count.
+/// @param is_self  of a mesh with itself, which has no side
 template <typename S>
-ContactKey contactKey(const ContinuousContact<S>& contact) {
+ContactKey contactKey(const ContinuousContact<S>& contact, bool is_self) {
   ContactKey key{{static_cast<int>(contact.kind), contact.part1, contact.part2,
-                  contact.first_on_o1 && contact.o1 != contact.o2}};
+                  contact.first_on_o1 && !is_self}};
   int* const first = key.data() + 4;
   switch (contact.kind) {
     case ContinuousContactKind::kVertexShape:
@@ -62,8 +63,7 @@ ContactKey contactKey(const ContinuousContact<S>& contact) {
       std::sort(first, first + 2);
       std::sort(first + 2, first + 4);
       // In a self-collision no edge is the first one.
-      if (contact.o1 == contact.o2 &&
-          std::lexicographical_compare(first + 2, first + 4, first, first + 2))
+      if (is_self && std::lexicographical_compare(first + 2, first + 4, first, first + 2))
         std::swap_ranges(first, first + 2, first + 2);
       break;
     default:
@@ -117,8 +117,8 @@ class PersistentPairs {
     bool isNew() const { return num_steps == 1; }
   };
 
-  /// @brief Compares an answer with the one before. If it throws (std::bad_alloc),
-  /// nothing has changed.
+  /// @brief Compares an answer with the one before. If it throws, nothing has changed.
+  /// @throws fcl::Exception  a pair is twice in the answer
   void update(const ContinuousManagerResult<S>& result);
 
   /// @brief The pairs of the last answer, in its order: pairs()[i] is result.pairs[i].
@@ -159,8 +159,7 @@ class PersistentPairs {
     const std::less<const Object*> less{};
     return less(x1, y1) || (x1 == y1 && less(x2, y2));
   }
-  static std::vector<Contact> sortedContacts(
-      const std::vector<ContinuousContact<S>>& list);
+  static std::vector<Contact> sortedContacts(const ContinuousPairResult<S>& pair);
   static std::vector<std::ptrdiff_t> match(const std::vector<Contact>& before,
                                            const std::vector<Contact>& now);
 
@@ -204,11 +203,11 @@ void PersistentPairs<S, Data>::State::sortOrder() {
 
 template <typename S, typename Data>
 std::vector<typename PersistentPairs<S, Data>::Contact>
-PersistentPairs<S, Data>::sortedContacts(const std::vector<ContinuousContact<S>>& list) {
+PersistentPairs<S, Data>::sortedContacts(const ContinuousPairResult<S>& pair) {
   std::vector<Contact> contacts;
-  contacts.reserve(list.size());
-  for (const ContinuousContact<S>& contact : list)
-    contacts.emplace_back(detail::contactKey(contact),
+  contacts.reserve(pair.result.contacts.size());
+  for (const ContinuousContact<S>& contact : pair.result.contacts)
+    contacts.emplace_back(detail::contactKey(contact, pair.o1 == pair.o2),
                           static_cast<std::ptrdiff_t>(contacts.size()));
   std::sort(contacts.begin(), contacts.end());
   return contacts;
@@ -237,7 +236,7 @@ void PersistentPairs<S, Data>::update(const ContinuousManagerResult<S>& result) 
   std::vector<std::ptrdiff_t> before;
   std::vector<bool> stays(state_.pairs.size(), false);
   for (const ContinuousPairResult<S>& pair : result.pairs) {
-    std::vector<Contact> contacts = sortedContacts(pair.result.contacts);
+    std::vector<Contact> contacts = sortedContacts(pair);
     before.push_back(state_.find(pair.o1, pair.o2));
     if (before.back() < 0) {
       next.add({pair.o1, pair.o2, next_id++, 1, match({}, contacts), Data()},
@@ -246,13 +245,19 @@ void PersistentPairs<S, Data>::update(const ContinuousManagerResult<S>& result) 
     }
     const auto i = static_cast<std::size_t>(before.back());
     const Pair& old = state_.pairs[i];
-    assert(!stays[i]);
     stays[i] = true;
     next.add({pair.o1, pair.o2, old.id, old.num_steps + 1,
               match(state_.contacts[i], contacts), Data()},
              std::move(contacts));
   }
   next.sortOrder();
+  for (std::size_t i = 1; i < next.order.size(); ++i) {
+    const Pair &x = next.pairs[next.order[i - 1]], &y = next.pairs[next.order[i]];
+    if (x.o1 == y.o1 && x.o2 == y.o2)
+      throw Exception(
+          "PersistentPairs: a pair of objects is twice in the answer. Give that of one "
+          "query");
+  }
   std::vector<Pair> removed;
   removed.reserve(state_.pairs.size());
   // From here on Data is moved, and nothing is allocated.
