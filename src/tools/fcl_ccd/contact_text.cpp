@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact_text.h"
 
-#include <algorithm>
 #include <array>
-#include <sstream>
 #include <utility>
 
 #include "counted.h"
 #include "number_text.h"
+#include "sentence.h"
 
 namespace fcl_ccd {
 namespace {
@@ -23,12 +22,15 @@ struct KindNames {
   int num_first_feature;  ///< vertices of the first feature
 };
 
-/// The program has no shapes.
 constexpr KindNames kKinds[] = {{Kind::kVertexFace, "vf", "vertex-face", 4, 1},
                                 {Kind::kEdgeEdge, "ee", "edge-edge", 4, 2},
                                 {Kind::kVertexEdge, "ve", "vertex-edge", 3, 1},
                                 {Kind::kVertexVertex, "vv", "vertex-vertex", 2, 1},
-                                {Kind::kCrossing, "crossing", "crossing", 5, 2}};
+                                {Kind::kCrossing, "crossing", "crossing", 5, 2},
+                                {Kind::kVertexShape, "vs", "vertex-shape", 1, 1},
+                                {Kind::kEdgeShape, "es", "edge-shape", 2, 2},
+                                {Kind::kFaceShape, "fs", "face-shape", 3, 3},
+                                {Kind::kShapes, "ss", "shape-shape", 0, 0}};
 
 const KindNames& namesOf(Kind kind) {
   for (const KindNames& names : kKinds)
@@ -70,58 +72,15 @@ ParsedName parseName(const Json& json) {
 
 /// "vertex 3 of triangle 1", "edge b0 b1 of free edge b7".
 std::string featureText(const SceneContact& contact, std::size_t feature) {
-  constexpr std::array<const char*, 4> kFeatures{"", "vertex", "edge", "face"};
-  const auto num_first =
-                 static_cast<std::size_t>(namesOf(contact.kind).num_first_feature),
+  const auto num_first = firstFeatureSize(contact.kind),
              num_all = static_cast<std::size_t>(contact.num_vertices);
   const std::size_t begin = feature == 0 ? 0 : num_first,
                     end = feature == 0 ? num_first : num_all;
-  std::string text = kFeatures[end - begin];
+  std::string text = featureName(end - begin);
   for (std::size_t i = begin; i < end; ++i) text += ' ' + nameOf(contact.vertices[i]);
-  const PrimitiveKind kind = contact.triangle_kinds[feature];
-  text += kind == PrimitiveKind::kFreeEdge    ? " of free edge "
-          : kind == PrimitiveKind::kFreePoint ? " of free point "
-                                              : " of triangle ";
-  return text + (isOfB(contact, feature) ? "b" : "") +
+  return text + " of " + wordOf(contact.triangle_kinds[feature]) + ' ' +
+         (isOfB(contact, feature) ? "b" : "") +
          std::to_string(contact.triangles[feature]);
-}
-
-/// A text that wrapped() does not break: a blank of it is a character that no name has.
-constexpr char kBlank = '\1';
-std::string unbroken(std::string text) {
-  std::replace(text.begin(), text.end(), ' ', kBlank);
-  return text;
-}
-
-std::string pointText(const std::array<double, 3>& point) {
-  constexpr int kDigits = 6;
-  std::string text;
-  for (const double x : point)
-    // -0 becomes 0.
-    text += (text.empty() ? "(" : ", ") + numberText(x + 0.0, kDigits);
-  return unbroken(text + ')');
-}
-
-std::string normalText(const std::array<double, 3>& normal) {
-  return normal == std::array<double, 3>{} ? "no normal" : "normal " + pointText(normal);
-}
-
-/// Breaks a text at blanks into lines of at most 80 characters, all but the first of
-/// which are indented. Blanks of unbroken() stay.
-std::string wrapped(const std::string& text) {
-  constexpr std::size_t kWidth = 80;
-  std::istringstream words(text);
-  std::string lines, line;
-  for (std::string word; words >> word;) {
-    if (!line.empty() && line.size() + 1 + word.size() > kWidth) {
-      lines += line + '\n';
-      line = " ";
-    }
-    line += (line.empty() ? "" : " ") + word;
-  }
-  lines += line + '\n';
-  std::replace(lines.begin(), lines.end(), kBlank, ' ');
-  return lines;
 }
 
 }  // namespace
@@ -129,6 +88,15 @@ std::string wrapped(const std::string& text) {
 const char* nameOf(Kind kind) { return namesOf(kind).name; }
 
 const char* wordsOf(Kind kind) { return namesOf(kind).words; }
+
+std::size_t firstFeatureSize(Kind kind) {
+  return static_cast<std::size_t>(namesOf(kind).num_first_feature);
+}
+
+const char* featureName(std::size_t num_vertices) {
+  constexpr std::array<const char*, 4> kFeatures{"", "vertex", "edge", "face"};
+  return kFeatures.at(num_vertices);
+}
 
 std::string nameOf(const SceneVertex& vertex) {
   return (vertex.of_b ? "b" : "") + std::to_string(vertex.id);
@@ -142,6 +110,17 @@ const char* nameOf(PrimitiveKind kind) {
       return "p";
     default:
       return "";
+  }
+}
+
+const char* wordOf(PrimitiveKind kind) {
+  switch (kind) {
+    case PrimitiveKind::kFreeEdge:
+      return "free edge";
+    case PrimitiveKind::kFreePoint:
+      return "free point";
+    default:
+      return "triangle";
   }
 }
 

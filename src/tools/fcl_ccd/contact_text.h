@@ -4,6 +4,7 @@
 #ifndef FCL_CCD_CONTACT_TEXT_H
 #define FCL_CCD_CONTACT_TEXT_H
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -12,17 +13,27 @@
 
 namespace fcl_ccd {
 
-/// @brief "vf", "ee", "ve", "vv" or "crossing".
+/// @brief "vf", "ee", "ve", "vv" or "crossing"; with a shape "vs", "es", "fs" or "ss".
 const char* nameOf(fcl::ContinuousContactKind kind);
 
-/// @brief "vertex-face", "edge-edge", "vertex-edge", "vertex-vertex" or "crossing".
+/// @brief "vertex-face", "edge-edge", "vertex-edge", "vertex-vertex" or "crossing"; with
+/// a shape "vertex-shape", "edge-shape", "face-shape" or "shape-shape".
 const char* wordsOf(fcl::ContinuousContactKind kind);
+
+/// @brief The number of vertices of the first feature of a contact.
+std::size_t firstFeatureSize(fcl::ContinuousContactKind kind);
+
+/// @brief "vertex", "edge" or "face", by the number of its vertices.
+const char* featureName(std::size_t num_vertices);
 
 /// @brief The id of a vertex: "3", or "b3" in mesh B.
 std::string nameOf(const SceneVertex& vertex);
 
 /// @brief What is before the number of a triangle (nothing), a free edge or a free point.
 const char* nameOf(fcl::PrimitiveKind kind);
+
+/// @brief "triangle", "free edge" or "free point".
+const char* wordOf(fcl::PrimitiveKind kind);
 
 /// @brief The i-th vertex of a contact or a candidate. Empty: it has fewer.
 template <typename Pair>

@@ -21,6 +21,13 @@ namespace {
 
 }  // namespace
 
+std::string csvField(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string field = "\"";
+  for (const char c : text) field.append(c == '"' ? 2 : 1, c);
+  return field + '"';
+}
+
 ColumnNumbers parseColumns(const std::string& list,
                            const std::vector<std::string>& known) {
   ColumnNumbers columns;

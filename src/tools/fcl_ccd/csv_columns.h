@@ -29,6 +29,9 @@ ColumnNumbers parseColumns(const std::string& list,
 void requireNoneTwice(const ColumnNumbers& columns,
                       const std::vector<std::string>& known);
 
+/// @brief A text as a value: in quotes if it needs them.
+std::string csvField(const std::string& text);
+
 template <typename Row, std::size_t n>
 std::vector<std::string> namesOf(const CsvColumn<Row> (&columns)[n]) {
   std::vector<std::string> names;

@@ -48,14 +48,6 @@ void appendTime(const std::optional<double>& time, std::string& line) {
   if (time) line.append(numberText(*time));
 }
 
-/// A text in the form of CSV.
-std::string csvField(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string field = "\"";
-  for (const char c : text) field.append(c == '"' ? 2 : 1, c);
-  return field + '"';
-}
-
 constexpr CsvColumn<AnswerRow> kAnswerColumns[] = {
     {"index", [](const AnswerRow& row,
                  std::string& line) { line.append(std::to_string(row.index)); }},

@@ -5,12 +5,12 @@
 #include <cassert>
 #include <chrono>
 #include <limits>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
+#include "contact_text.h"
 #include "fcl/narrowphase/continuous_candidates.h"
 #include "fcl/narrowphase/continuous_collision.h"
+#include "mesh_model.h"
 #include "stage_list.h"
 
 namespace fcl_ccd {
@@ -29,83 +29,6 @@ class Stopwatch {
  private:
   std::chrono::steady_clock::time_point start_{std::chrono::steady_clock::now()};
 };
-
-void requireSuccess(int code, const std::string& error, const char* mesh) {
-  if (code != fcl::BVH_OK)
-    throw std::runtime_error(std::string("mesh ") + mesh + ": " + error);
-}
-
-/// @brief A mesh in FCL's own types.
-struct ModelInput {
-  std::vector<fcl::Vector3d> vertices;
-  std::vector<fcl::Triangle> triangles;
-  std::vector<fcl::FreeEdge> edges;
-  std::vector<std::size_t> points;
-};
-
-ModelInput toInput(const Vertices& vertices, const Triangles& triangles) {
-  ModelInput input;
-  input.vertices.reserve(vertices.size());
-  for (const auto& p : vertices) input.vertices.emplace_back(p[0], p[1], p[2]);
-  input.triangles.reserve(triangles.size());
-  for (const auto& t : triangles)
-    input.triangles.emplace_back(static_cast<std::size_t>(t[0]),
-                                 static_cast<std::size_t>(t[1]),
-                                 static_cast<std::size_t>(t[2]));
-  return input;
-}
-
-/// @brief Adds free edges and points. An edge whose ends were joined is a point.
-/// @return what the model's numbers of them stand for
-std::vector<fcl::Primitive> addFree(const FreeElements& free, ModelInput& input) {
-  using fcl::PrimitiveKind;
-  std::vector<fcl::Primitive> edges, points;
-  for (std::size_t i = 0; i < free.edges.size(); ++i) {
-    const auto from = static_cast<std::size_t>(free.edges[i][0]),
-               to = static_cast<std::size_t>(free.edges[i][1]);
-    if (from == to)
-      input.points.push_back(from);
-    else
-      input.edges.push_back({from, to});
-    (from == to ? points : edges).push_back({PrimitiveKind::kFreeEdge, i});
-  }
-  for (std::size_t i = 0; i < free.points.size(); ++i) {
-    input.points.push_back(static_cast<std::size_t>(free.points[i]));
-    points.push_back({PrimitiveKind::kFreePoint, i});
-  }
-  edges.insert(edges.end(), points.begin(), points.end());
-  return edges;
-}
-
-template <typename Model>
-std::unique_ptr<Model> buildModel(const ModelInput& input, const char* mesh,
-                                  int num_threads) {
-  auto model = std::make_unique<Model>();
-  requireSuccess(model->setNumThreads(num_threads), model->lastError(), mesh);
-  requireSuccess(model->beginModel(static_cast<int>(input.triangles.size()),
-                                   static_cast<int>(input.vertices.size())),
-                 model->lastError(), mesh);
-  requireSuccess(
-      model->addSubModel(input.vertices, input.triangles, input.edges, input.points),
-      model->lastError(), mesh);
-  const int code = model->endModel(fcl::FclTree::kSkip);
-  requireSuccess(code, model->lastError(), mesh);
-  return model;
-}
-
-template <typename Model>
-void updateModel(Model& model, const Vertices& from, const Vertices& to,
-                 const char* name) {
-  if (&from == &to && !model.isDeforming()) return;
-  const int code = model.updateFrames(from.data()->data(), to.data()->data(), to.size(),
-                                      fcl::FclTree::kSkip);
-  requireSuccess(code, model.lastError(), name);
-}
-
-/// The number of vertices of the contact's first feature.
-std::size_t firstFeatureSize(Kind kind) {
-  return kind == Kind::kEdgeEdge || kind == Kind::kCrossing ? 2 : 1;
-}
 
 /// Sets the triangle of a feature from the number b of a contact or candidate.
 template <typename Pair>
@@ -221,21 +144,19 @@ Scene::Scene(const SceneTriangles& triangles, const SceneFrame& frame,
 Scene::Body Scene::build(const Triangles& triangles, const FreeElements* free,
                          const Vertices& vertices, const char* name,
                          double& seconds) const {
-  Body body;
-  ModelInput input = toInput(vertices, triangles);
-  if (free != nullptr) body.free = addFree(*free, input);
+  const MeshInput input = toInput(vertices, triangles, free);
   // The conversion is not timed.
   const Stopwatch watch;
-  body.model = buildModel<Model>(input, name, settings_.num_threads);
+  Body body = buildModel(input, name, settings_.num_threads);
   seconds += watch.seconds();
   return body;
 }
 
 void Scene::build(const SceneTriangles& triangles, const SceneFrame& frame) {
   double seconds = 0;
-  a_ = build(*triangles.a, triangles.free_a, *frame.a, "A", seconds);
+  a_ = build(*triangles.a, triangles.free_a, *frame.a, "mesh A", seconds);
   if (frame.b != nullptr)
-    b_ = build(*triangles.b, triangles.free_b, *frame.b, "B", seconds);
+    b_ = build(*triangles.b, triangles.free_b, *frame.b, "mesh B", seconds);
   build_time_ = std::min(build_time_, seconds);
 }
 
@@ -312,8 +233,8 @@ std::vector<SceneCandidate> Scene::candidates(const SceneFrame& from,
 }
 
 void Scene::move(const SceneFrame& from, const SceneFrame& to) {
-  updateModel(*a_.model, *from.a, *to.a, "A");
-  if (b_.model) updateModel(*b_.model, *from.b, *to.b, "B");
+  updateModel(*a_.model, *from.a, *to.a, "mesh A");
+  if (b_.model) updateModel(*b_.model, *from.b, *to.b, "mesh B");
 }
 
 StepResult Scene::runOnce(const SceneFrame& from, const SceneFrame& to) {

@@ -8,10 +8,9 @@
 #include <optional>
 #include <vector>
 
-#include "fcl/geometry/bvh/deformable_bvh_model.h"
-#include "fcl/math/bv/AABB.h"
 #include "fcl/narrowphase/continuous_contact.h"
 #include "mesh_io.h"
+#include "mesh_model.h"
 
 namespace fcl_ccd {
 
@@ -135,14 +134,8 @@ class Scene {
   StepResult stepInDetail(const SceneFrame& from, const SceneFrame& to);
 
  private:
-  using Model = fcl::DeformableBVHModel<fcl::AABBd>;
-
-  /// A mesh of the scene.
-  struct Body {
-    std::unique_ptr<Model> model;
-    /// What the numbers of contacts from the triangles on stand for.
-    std::vector<fcl::Primitive> free;
-  };
+  using Model = MeshModel::Model;
+  using Body = MeshModel;
 
   Body build(const Triangles& triangles, const FreeElements* free,
              const Vertices& vertices, const char* name, double& seconds) const;
