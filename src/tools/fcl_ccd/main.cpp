@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <limits>
@@ -29,6 +30,8 @@
 #include "ranks.h"
 #include "run_command.h"
 #include "run_inputs.h"
+#include "scene_command.h"
+#include "scene_file.h"
 #include "show_options.h"
 #include "stop_signal.h"
 #include "suggestion.h"
@@ -408,6 +411,56 @@ std::string suggestionFor(const CLI::App& command, int argc, char** argv) {
   return "";
 }
 
+/// The scene file among the words of `run`, or null.
+const std::string* sceneFileOf(const fcl_ccd::RunOptions& options) {
+  const auto found =
+      std::find_if(options.frames.begin(), options.frames.end(), fcl_ccd::isSceneFile);
+  return found == options.frames.end() ? nullptr : &*found;
+}
+
+/// Takes the options of a scene from those of `run`, and refuses all others.
+fcl_ccd::SceneOptions sceneOptionsOf(const CLI::App& run,
+                                     const fcl_ccd::RunOptions& options,
+                                     const std::string& path) {
+  const std::vector<std::string> known{"query",   "contacts", "json", "threads",
+                                       "toc-err", "start",    "end"};
+  for (const CLI::Option* option : run.get_options())
+    for (const std::string& name : option->get_lnames())
+      if (option->count() > 0 &&
+          std::find(known.begin(), known.end(), name) == known.end())
+        throw std::runtime_error(
+            path + ": --" + name + " is for frames, and not for a scene. " +
+            (name == "thickness" ? "Write the field 'thickness' of the objects. " : "") +
+            "A scene takes --query, --contacts, --json, --threads, --toc-err, --start "
+            "and "
+            "--end");
+  if (options.frames.size() > 1)
+    throw std::runtime_error(path +
+                             ": a scene is named alone, without other files. Run "
+                             "each scene by itself");
+  return {path,
+          options.settings.query,
+          options.settings.toc_err,
+          options.threads.value_or(0),
+          options.range,
+          options.contacts_path,
+          options.json_path};
+}
+
+/// `run` with frames or with a scene file.
+int runFramesOrScene(const CLI::App& run, const fcl_ccd::RunOptions& options,
+                     fcl_ccd::Ranks& ranks, const std::string& command) {
+  fcl_ccd::catchStopSignals();
+  const std::string* scene = sceneFileOf(options);
+  if (scene == nullptr) return fcl_ccd::runCommand(options, ranks, command);
+  // mpirun ends all ranks when one ends with another code: rank 0 is to say why.
+  if (ranks.rank() != 0) return 0;
+  if (ranks.size() > 1)
+    throw std::runtime_error(*scene +
+                             ": a scene runs in one process: start it without mpirun");
+  return fcl_ccd::sceneCommand(sceneOptionsOf(run, options, *scene));
+}
+
 /// The command line as one text.
 std::string joined(int argc, char** argv) {
   std::string text;
@@ -453,10 +506,8 @@ int runProgram(int argc, char** argv, fcl_ccd::Ranks& ranks) {
   }
   run_options.range.is_growing = run_options.follow.has_value();
 
-  if (run->parsed()) {
-    fcl_ccd::catchStopSignals();
-    return fcl_ccd::runCommand(run_options, ranks, joined(argc, argv));
-  }
+  if (run->parsed())
+    return runFramesOrScene(*run, run_options, ranks, joined(argc, argv));
   fcl_ccd::removeTemporariesOnSignal();
   if (queries->parsed())
     fcl_ccd::queriesCommand(queries_options);
