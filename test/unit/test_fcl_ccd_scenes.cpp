@@ -596,7 +596,7 @@ TEST_F(CcdScenes, WritesJson) {
   EXPECT_EQ(file["summary"]["steps"], 2);
   EXPECT_EQ(first.at("step"), 1);
   EXPECT_EQ(first.at("b2"), nullptr);
-  EXPECT_TRUE(first.at("b1").is_string());
+  EXPECT_TRUE(first.at("b1").is_number_integer());
   EXPECT_EQ(run("run sub/scene.json --json j.json --end 1").exit_code, 0);
   EXPECT_EQ(json("j.json").at("summary").at("first"), nullptr);
 }
@@ -684,6 +684,8 @@ TEST_F(CcdScenes, RefusesWrongPoses) {
   refuse("[1, 0, 0, 0]", "[0, 0, 0, 0]", 8, "length");
   refuse("[1, 0, 0, 0]", "[1, 0, 0]", 8, "the list has 3 entries. Write 4");
   refuse("\"rotation\"", "\"rotatoin\"", 8, "Did you mean 'rotation'?");
+  refuse("[0, 0, 5]", "[0, 0, -1e101]", 7,
+         "objects[1].poses[0].translation[2]: is -1e+101. Use larger units");
   refuse("{\"translation\": [0, 0, 5]}", "[]", 7, "poses[0]: the list is empty");
   refuse("{\"translation\": [0, 0, 5]}", "[0, 0, 5]", 7, "Write 4");
   refuse("{\"translation\": [0, 0, 5]}", "[[1,0,0,0],\n[0,2,0,0],[0,0,1,0],[0,0,0,1]]", 7,

@@ -844,6 +844,7 @@ TEST_F(CcdSequence, TheManualsCommandsWork) {
   if (kHasAddressSanitizer) GTEST_SKIP() << "The other tests have these commands";
   writeFramesOfThePages();
   writeQueriesOfThePage(path(""));
+  fs::copy_file(FCL_CCD_SOURCE_DIR "/examples/scene.json", path("scene.json"));
   writeText(path("scan_0.stl"), toBinaryStl(toSoup(stripAndSpike(0))));
   writeText(path("scan_1.stl"), toBinaryStl(toSoup(stripAndSpike(2))));
   const std::vector<std::string> commands =

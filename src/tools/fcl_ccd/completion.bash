@@ -29,6 +29,9 @@ _fcl_ccd() {
           words="$common --against --start --end --stride --follow --no-self --query --thickness
             --ignore-initially-closer --jobs --threads --weld --contacts --columns --steps --resume --report
             --picture --paint --at-step --at-time"
+          # A scene takes some of them.
+          [[ ${COMP_WORDS[2]-} != *.json ]] ||
+            words='--help --query --toc-err --threads --contacts --json --start --end'
           ;;
         candidates:-*) words='--help --against --no-self --thickness --weld --output --columns' ;;
         compare:-*) words="$common --kind --truth" ;;

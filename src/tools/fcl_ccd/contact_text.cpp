@@ -38,12 +38,6 @@ const KindNames& namesOf(Kind kind) {
   return kKinds[4];
 }
 
-/// A number where the name is one.
-Json numberOrName(const std::string& name) {
-  if (name.find_first_not_of("0123456789") != std::string::npos) return name;
-  return std::stoll(name);
-}
-
 /// A vertex, or a triangle with what it stands for.
 struct ParsedName {
   bool of_b{false};
@@ -122,6 +116,11 @@ const char* wordOf(PrimitiveKind kind) {
     default:
       return "triangle";
   }
+}
+
+Json numberOrName(const std::string& name) {
+  if (name.find_first_not_of("0123456789") != std::string::npos) return name;
+  return std::stoll(name);
 }
 
 Json toJson(const SceneContact& contact) {

@@ -58,6 +58,9 @@ std::string triangleName(const Pair& pair, std::size_t feature) {
          std::to_string(pair.triangles[feature]);
 }
 
+/// @brief A number where the name is one, as "5"; otherwise the text, as "e5".
+Json numberOrName(const std::string& name);
+
 /// @brief kind, vertices, triangles, toc_lo, toc_hi, position, normal. Names of B, and of
 /// free edges and points, are texts; others are numbers.
 Json toJson(const SceneContact& contact);

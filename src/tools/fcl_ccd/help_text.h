@@ -9,6 +9,7 @@ namespace fcl_ccd {
 inline constexpr const char* kMainExamples = R"(Examples:
   fcl-ccd run cloth_0.ply cloth_1.ply
   fcl-ccd run frames/ --against body.obj --contacts contacts.csv --steps steps.jsonl
+  fcl-ccd run scene.json
   fcl-ccd candidates cloth_0.ply cloth_1.ply > candidates.csv
   fcl-ccd queries edge-edge.csv --json errors.json
   fcl-ccd compare cloth-ball/queries
@@ -33,6 +34,19 @@ inline constexpr const char* kRunDetails = R"(Frames:
   counted from 0, or have the number in their name (%04d).
   If files at the end are not whole yet, the steps before them are done, and the exit code
   is 6. --follow waits for frames until --end, Ctrl-C, or SECONDS without a new one.
+
+Scenes:
+  A name that ends in .json is a scene of many objects, which is tested step by step, each
+  object with all others: {"objects": [{"name": "ball", "shape": {"type": "sphere", "radius":
+  1}, "poses": [{"translation": [0, 0, 5]}, {"translation": [0, 0, 1]}]}, ...]}. A geometry
+  is a mesh (a file), frames (of a mesh that deforms), an octree (.bt or .ot) or a shape:
+  sphere, box, capsule, cylinder, cone, ellipsoid, plane, halfspace or convex. Other fields
+  of an object: poses, group, thickness, self_collision, min_approach_speed. Fields of the
+  file: objects, groups_apart, pair_distances, version. doc/program.md explains them.
+  --query, --toc-err, --threads, --contacts, --json, --start and --end act; other options
+  are refused. --contacts has the columns step,o1,o2,kind,b1,b2,toc_lo,toc_hi,x,y,z,nx,ny,nz.
+  kind is also vs, es, fs (a vertex, edge or face and a shape or cell) or ss (two of these).
+  Files are written when all steps are done.
 
 Tests:
   Without --against: A against itself. With --against: A against itself and A against B,
@@ -101,7 +115,8 @@ Examples:
   mpirun -n 4 fcl-ccd run frames/ --contacts contacts.csv --steps steps.jsonl
   fcl-ccd run --against ball_0.obj ball_1.obj --no-self -- cloth_0.obj cloth_1.obj
   fcl-ccd run frames/ --report report
-  fcl-ccd run frames/ --picture first.png --paint first.ply)";
+  fcl-ccd run frames/ --picture first.png --paint first.ply
+  fcl-ccd run scene.json --contacts contacts.csv)";
 
 inline constexpr const char* kCandidatesDetails = R"(Frames:
   Two files, or what names two frames as in 'fcl-ccd run --help'. Vertices move on straight

@@ -259,6 +259,11 @@ bool JsonFile::boolean(const JsonValue& value) const {
 double JsonFile::number(const JsonValue& value) const {
   const auto* number = value.as<double>();
   if (number == nullptr) refuseKind(value, "a number");
+  // Far below the limits of the library, which know no lines.
+  constexpr double kLargest = 1e100;
+  if (!(*number >= -kLargest && *number <= kLargest))
+    refuse(value,
+           "is " + numberText(*number, 6) + ". Use larger units: numbers go up to 1e100");
   return *number;
 }
 

@@ -126,7 +126,8 @@ void addAgainstOption(CLI::App& command, fcl_ccd::RunOptions& options) {
 
 void addFrameOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
   constexpr int kUnlimited = -1;
-  run.add_option("A", options.frames, "Frames of mesh A, at least two")
+  run.add_option("A", options.frames,
+                 "Frames of mesh A, at least two; or a scene, FILE.json")
       ->type_name("FRAMES")
       ->required()
       ->expected(1, kUnlimited);

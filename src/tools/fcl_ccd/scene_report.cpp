@@ -137,7 +137,7 @@ std::string sentenceOf(const ObjectsStep& step, const SceneObjects& objects,
 }
 
 Json partInJson(const std::string& part) {
-  return part.empty() ? Json(nullptr) : Json(part);
+  return part.empty() ? Json(nullptr) : numberOrName(part);
 }
 
 Json contactInJson(const ObjectsStep& step, const SceneObjects& objects) {
