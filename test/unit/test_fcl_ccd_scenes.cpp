@@ -482,6 +482,15 @@ TEST_F(CcdScenes, AnswersEqualTheLibrarysToTheBit) {
         ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
         ASSERT_EQ(linesOf(readText(path("c.csv"))), expected) << word << ' ' << threads;
       }
+      if (seed == 0 && query != ContinuousQuery::kAny) {
+        const Outcome outcome =
+            run("run " + name + " --contacts c.csv --start 1 --end 2 --query " + word);
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+        std::vector<std::string> second{kColumns};
+        for (const std::string& row : expected)
+          if (row.rfind("1,", 0) == 0) second.push_back(row);
+        EXPECT_EQ(linesOf(readText(path("c.csv"))), second) << word;
+      }
       if (query == ContinuousQuery::kAll) {
         for (const std::string& row : expected) kinds.insert(csvFields(row)[3]);
         expected.erase(expected.begin());
@@ -541,6 +550,22 @@ TEST_F(CcdScenes, NamesFeaturesOfMeshes) {
      "poses": [{"translation": [0, 0, 2]}, {"translation": [0, 0, 0.5]}]},
     {"name": "box", "shape": {"type": "box", "sides": [20, 20, 2]}, "thickness": 0.25}]})");
   EXPECT_NE(run("run scene.json").out.find("comes near box box"), std::string::npos);
+}
+
+TEST_F(CcdScenes, NamesCablesAndPoints) {
+  writeText(path("cable.obj"), "v 0 0 0\nv 4 0 0\nl 1 2\np 1\n");
+  writeText(path("scene.json"), R"({"objects": [
+    {"name": "cable", "mesh": "cable.obj", "poses": [{}, {"translation": [0, 0, 5]}]},
+    {"name": "ball", "shape": {"type": "sphere", "radius": 1},
+     "poses": [{"translation": [0, 0, 3]}]}]})");
+  const Outcome outcome = run("run scene.json --contacts c.csv");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  std::set<std::string> parts;
+  for (const CsvRow& row : readCsv(path("c.csv").string(), kColumns))
+    parts.insert(row.at("kind") + ' ' + row.at("b1") + ' ' + row.at("b2"));
+  EXPECT_EQ(parts, (std::set<std::string>{"vs e0 ", "vs p0 "}));
+  EXPECT_NE(outcome.out.find("free edge 0 of cable meets"), std::string::npos)
+      << outcome.out;
 }
 
 TEST_F(CcdScenes, TellsOfSplitVertices) {
