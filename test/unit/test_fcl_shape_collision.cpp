@@ -630,9 +630,16 @@ TEST(ShapeCollide, TinyScenes) {
         {"mesh", mesh, 0}};
     for (const Target& target : tiny) {
       SCOPED_TRACE(target.name);
-      const Result result = ask({std::make_shared<Sphere<double>>(0.25 * size),
-                                 at(0, 0, 2 * size), at(0, 0, -2 * size)},
-                                {target.geometry, at(0, 0, 0), at(0, 0, 0)});
+      const auto fall = [&] {
+        return ask({std::make_shared<Sphere<double>>(0.25 * size), at(0, 0, 2 * size),
+                    at(0, 0, -2 * size)},
+                   {target.geometry, at(0, 0, 0), at(0, 0, 0)});
+      };
+      if (size < 0x1p-500 && target.geometry == mesh) {
+        expectRefused(fall, "below 2^-500");
+        continue;
+      }
+      const Result result = fall();
       const double time = (2 - 0.25 - target.top) / 4;
       EXPECT_TRUE(result.is_collide);
       EXPECT_LE(result.time_of_contact, time + 1e-15);
