@@ -199,12 +199,13 @@ int main(int argc, char** argv) {
       passed_before += without.passed;
       passed += with.passed;
     }
-  constexpr int kPile = 10;
-  const Rest without = pilePlates(kPile, false), with = pilePlates(kPile, true);
+  // DART takes long for plates that lie in each other.
+  const int pile = throws < 20 ? 4 : 10;
+  const Rest without = pilePlates(pile, false), with = pilePlates(pile, true);
   std::printf(
       "%d plates fall: %d pass through, at last %.1e J; with the continuous step %d, "
       "%.1e J, %d of the last 1000 steps cut; %.3f and %.3f ms a step\n",
-      kPile, without.passed, without.kinetic, with.passed, with.kinetic, with.cut,
+      pile, without.passed, without.kinetic, with.passed, with.kinetic, with.cut,
       without.milliseconds, with.milliseconds);
   passed += with.passed;
   return passed_before > 0 && passed == 0 && with.kinetic < 1e-3 ? 0 : 1;
