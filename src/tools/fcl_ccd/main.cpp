@@ -419,6 +419,14 @@ const std::string* sceneFileOf(const fcl_ccd::RunOptions& options) {
   return found == options.frames.end() ? nullptr : &*found;
 }
 
+[[noreturn]] void refuseForScene(const std::string& path, const std::string& option) {
+  throw std::runtime_error(
+      path + ": --" + option + " is for frames, and not for a scene. " +
+      (option == "thickness" ? "Write the field 'thickness' of the objects. " : "") +
+      "A scene takes --query, --contacts, --json, --threads, --toc-err, --start and "
+      "--end");
+}
+
 /// Takes the options of a scene from those of `run`, and refuses all others.
 fcl_ccd::SceneOptions sceneOptionsOf(const CLI::App& run,
                                      const fcl_ccd::RunOptions& options,
@@ -429,12 +437,7 @@ fcl_ccd::SceneOptions sceneOptionsOf(const CLI::App& run,
     for (const std::string& name : option->get_lnames())
       if (option->count() > 0 &&
           std::find(known.begin(), known.end(), name) == known.end())
-        throw std::runtime_error(
-            path + ": --" + name + " is for frames, and not for a scene. " +
-            (name == "thickness" ? "Write the field 'thickness' of the objects. " : "") +
-            "A scene takes --query, --contacts, --json, --threads, --toc-err, --start "
-            "and "
-            "--end");
+        refuseForScene(path, name);
   if (options.frames.size() > 1)
     throw std::runtime_error(path +
                              ": a scene is named alone, without other files. Run "

@@ -33,7 +33,7 @@ struct ShapeFields {
     return sizes;
   }
   fcl::Vector3d normal() const {
-    const fcl::Vector3d normal = readPoint(file, at("normal"));
+    fcl::Vector3d normal = readPoint(file, at("normal"));
     // Its square must neither be 0 nor overflow.
     if (!(normal.squaredNorm() > 1e-200 && normal.squaredNorm() < 1e200))
       file.refuse(at("normal"), "the normal has no direction. Write a unit vector");

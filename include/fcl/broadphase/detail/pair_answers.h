@@ -26,6 +26,7 @@ namespace detail {
 template <typename S, typename Answer>
 void sortByTime(std::vector<Answer>& pairs) {
   std::vector<std::pair<S, std::size_t>> order;
+  order.reserve(pairs.size());
   for (const Answer& pair : pairs)
     order.emplace_back(pair.result.time_of_contact, order.size());
   std::sort(order.begin(), order.end());
