@@ -155,7 +155,7 @@ TEST_F(CcdOutputs, ARunWhoseOutputIsCutIsResumed) {
   EXPECT_EQ(run("run f" + files).exit_code, 0);
   const auto whole = outputs();
   for (const std::string name : {"c.csv", "s.jsonl"})
-    for (const std::uintmax_t cut : {1, 4, 20, 90}) {
+    for (const std::uintmax_t cut : {4, 90}) {
       SCOPED_TRACE(name + " without " + std::to_string(cut) + " bytes");
       for (const char* old : {"f", "c.csv", "s.jsonl"}) fs::remove_all(path(old));
       writeFrames(5);
