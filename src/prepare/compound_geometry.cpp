@@ -156,9 +156,11 @@ void requireParts(const CompoundParts<S>& compound, const std::string& name) {
   for (std::size_t i = 0; i < compound.parts.size(); ++i) {
     const auto& part = compound.parts[i];
     if (part.geometry->getObjectType() != OT_BVH) continue;
-    requireRigidPart(*part.geometry, nameOfPart(i) + ", " + name + ",");
-    const DeformableMesh* model = deformable::meshClassOf(*part.geometry).model;
-    if (model != part.model || (model && *model->revision() != part.revision))
+    const deformable::MeshClass mesh = deformable::meshClassOf(*part.geometry);
+    if (mesh.kind == deformable::MeshKind::kDeforming)
+      requireRigidPart(*part.geometry, nameOfPart(i) + ", " + name + ",");
+    if (mesh.model != part.model ||
+        (mesh.model && *mesh.model->revision() != part.revision))
       throw Exception(nameOfPart(i) + ", " + name +
                       ", is a mesh that was changed after the compound had read it. Call "
                       "update() of the compound");

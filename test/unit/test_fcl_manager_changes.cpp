@@ -653,6 +653,11 @@ TEST(FCL_MANAGER_VISIT, ApproachSpeedOfAnObject) {
   EXPECT_EQ(inContact(1e-3), Set{falls.get()});
   manager.setMinApproachSpeed(slides.get(), 1e-3);
   EXPECT_EQ(inContact(0), Set{falls.get()});
+  // The least distance is that of the geometries: what slides touches, and is the first.
+  ContinuousManagerDistance<double> nearest;
+  manager.distance(ContinuousDistanceRequest<double>(), nearest);
+  EXPECT_EQ(nearest.o2, slides.get());
+  EXPECT_EQ(nearest.result.time, 0);
   manager.setMinApproachSpeed(slides.get(), 0);
   EXPECT_EQ(inContact(0), (Set{slides.get(), falls.get()}));
   // Of two objects, and the request, the larger speed counts.

@@ -279,13 +279,10 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   void setMargin(const void* object);
   bool test(const detail::BroadPhasePair& pair, const ContinuousCollisionManager& other,
             Request& request, PairResult& tested) const;
-  /// @param take  as for giveAnswers()
-  /// @return the number of pairs that were tested
-  template <typename Take>
-  std::size_t give(const Pairs& pairs, const ContinuousCollisionManager& other,
-                   const Request& request, bool with_thickness, const Take& take) const;
+  class PairTest;
+  /// @param as_set  whether thickness, distances and approach speeds of objects act
   void answer(const Pairs& pairs, const ContinuousCollisionManager& other,
-              const Request& request, Result& result, bool with_thickness = true) const;
+              const Request& request, Result& result, bool as_set = true) const;
   static void callBack(const Pairs& pairs, void* cdata,
                        ContinuousCollisionCallBack<S> callback);
   CollisionObject<S>* sweptObject(Object* object) const;

@@ -44,17 +44,6 @@ void ContinuousCollisionManager<S>::collide(const ContinuousCollisionManager& ot
 }
 
 template <typename S>
-void ContinuousCollisionManager<S>::collide(
-    const Request& request,
-    const std::function<bool(ContinuousPairResult<S>&)>& visit) const {
-  if (!visit) throw Exception("collide: the function for pairs is empty. Give one");
-  detail::BroadPhaseSettings settings = settingsOf(request);
-  settings.with_self = true;
-  give(boxes_.pairs(settings), *this, request, true,
-       [&visit](PairResult&& pair) { return visit(pair); });
-}
-
-template <typename S>
 const ContinuousFilter& ContinuousCollisionManager<S>::filterOf(
     const Object* object) const {
   static const ContinuousFilter none;
@@ -82,7 +71,9 @@ S ContinuousCollisionManager<S>::approachSpeedOf(const Object* o1,
   if (first != approach_speeds_.end()) speed = std::max(speed, first->second);
   if (second != other.approach_speeds_.end()) speed = std::max(speed, second->second);
   if (!(speed > of_request)) return of_request;
+  // A mesh meets itself in its own frame.
   const bool are_straight =
+      o1 == o2 ||
       detail::areStraightMeshes(detail::readObject<S>(o1), detail::readObject<S>(o2));
   return are_straight ? speed : of_request;
 }
@@ -126,48 +117,70 @@ bool ContinuousCollisionManager<S>::test(const detail::BroadPhasePair& pair,
   return tested.result.is_collide;
 }
 
+/// Tests pairs of the objects of two managers, with what is set for them.
 template <typename S>
-template <typename Take>
-std::size_t ContinuousCollisionManager<S>::give(const Pairs& pairs,
-                                                const ContinuousCollisionManager& other,
-                                                const Request& request,
-                                                bool with_thickness,
-                                                const Take& take) const {
-  const bool has_distances =
-                 with_thickness && (!distances_.empty() || !other.distances_.empty()),
-             has_speeds = !approach_speeds_.empty() || !other.approach_speeds_.empty();
-  Request common = request;
-  if (has_distances) detail::addDistance(request, S(0), common);
-  return detail::giveAnswers<PairResult>(
-      pairs, common,
-      [&](const detail::BroadPhasePair& pair, Request& asked, PairResult& tested) {
-        const Object *o1 = objectOf(pair.o1), *o2 = objectOf(pair.o2);
-        if (has_distances) detail::addDistance(request, distanceOf(o1, other, o2), asked);
-        if (has_speeds)
-          asked.min_approach_speed =
-              approachSpeedOf(o1, other, o2, request.min_approach_speed);
-        return test(pair, other, asked, tested);
-      },
-      take);
-}
+class ContinuousCollisionManager<S>::PairTest {
+ public:
+  PairTest(const ContinuousCollisionManager& one, const ContinuousCollisionManager& other,
+           const Request& request, bool as_set)
+      : one_(one),
+        other_(other),
+        request_(request),
+        has_distances_(as_set && (!one.distances_.empty() || !other.distances_.empty())),
+        has_speeds_(as_set &&
+                    (!one.approach_speeds_.empty() || !other.approach_speeds_.empty())) {}
+
+  /// The request before anything is added for a pair.
+  Request request() const {
+    Request common = request_;
+    if (has_distances_) detail::addDistance(request_, S(0), common);
+    return common;
+  }
+
+  bool operator()(const detail::BroadPhasePair& pair, Request& asked,
+                  PairResult& tested) const {
+    const Object *o1 = objectOf(pair.o1), *o2 = objectOf(pair.o2);
+    if (has_distances_)
+      detail::addDistance(request_, one_.distanceOf(o1, other_, o2), asked);
+    if (has_speeds_)
+      asked.min_approach_speed =
+          one_.approachSpeedOf(o1, other_, o2, request_.min_approach_speed);
+    return one_.test(pair, other_, asked, tested);
+  }
+
+ private:
+  const ContinuousCollisionManager &one_, &other_;
+  const Request& request_;
+  bool has_distances_, has_speeds_;
+};
 
 template <typename S>
 void ContinuousCollisionManager<S>::answer(const Pairs& pairs,
                                            const ContinuousCollisionManager& other,
                                            const Request& request, Result& out,
-                                           bool with_thickness) const {
+                                           bool as_set) const {
+  const PairTest test(*this, other, request, as_set);
+  auto answers = detail::answersOf<PairResult>(pairs, test.request(), test);
   Result result;
   result.num_box_pairs = pairs.size();
-  result.num_tested =
-      give(pairs, other, request, with_thickness, [&result](PairResult&& pair) {
-        result.pairs.push_back(std::move(pair));
-        return false;
-      });
-  detail::sortByTime<S>(result.pairs);
+  result.num_tested = answers.num_tested;
+  result.pairs = std::move(answers.pairs);
   result.is_collide = !result.pairs.empty();
   if (result.is_collide)
     result.time_of_contact = result.pairs.front().result.time_of_contact;
   out = std::move(result);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::collide(
+    const Request& request,
+    const std::function<bool(ContinuousPairResult<S>&)>& visit) const {
+  if (!visit) throw Exception("collide: the function for pairs is empty. Give one");
+  detail::BroadPhaseSettings settings = settingsOf(request);
+  settings.with_self = true;
+  const PairTest test(*this, *this, request, true);
+  detail::giveAnswers<PairResult>(boxes_.pairs(settings), test.request(), test,
+                                  [&visit](PairResult&& pair) { return visit(pair); });
 }
 
 template <typename S>
