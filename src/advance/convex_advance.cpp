@@ -358,7 +358,7 @@ double ConvexAdvance::turningStep(double t, const State& state, const ConvexGap&
     later = std::min(t + horizon_, t1_);
     if (!(later > t)) return -1;
     const State there = stateAt(later);
-    next = convexGap(there.side[0].now, there.side[1].now, n, margin(1), 0);
+    next = convexGap(there.side[0].now, there.side[1].now, n, margin(1), 0, gap.nearest);
   }
   if (!(next.gap > margin(1))) return -1;
   const Vec change = (1 / (later - t)) * (next.direction - n);
@@ -417,7 +417,8 @@ Vec ConvexAdvance::firstGuess(const State& state) const {
 ConvexGap ConvexAdvance::gapOf(const State& state, double contact) const {
   if (flat_ >= 0) return flatGap(state);
   const Vec guess = maxNorm(guess_) > 0 ? guess_ : firstGuess(state);
-  return convexGap(state.side[0].now, state.side[1].now, guess, margin(1), contact);
+  return convexGap(state.side[0].now, state.side[1].now, guess, margin(1), contact,
+                   nearest_);
 }
 
 /// Each search ends where the distance is not above the gap by more than a tenth of what
@@ -434,7 +435,8 @@ ConvexGap ConvexAdvance::nearestAt(double t, double error) const {
     const double more = gap.gap + kShare * (gap.distance - gap.gap);
     if (!(more > enough)) break;
     enough = more;
-    gap = convexGap(state.side[0].now, state.side[1].now, gap.direction, enough, 0);
+    gap = convexGap(state.side[0].now, state.side[1].now, gap.direction, enough, 0,
+                    gap.nearest);
   }
   return gap;
 }
@@ -479,6 +481,7 @@ ConvexAdvance::Answer ConvexAdvance::advance(double& t, double t_stop, int& step
       },
       [this, &gap](double time, const State& state) {
         guess_ = gap.direction;
+        nearest_ = gap.nearest;
         return longestStep(time, state, gap);
       });
 }

@@ -157,6 +157,7 @@ class ConvexAdvance {
   Vec suggested_{0, 0, 0};
   /// The direction of the last gap; 0: there is none.
   Vec guess_{0, 0, 0};
+  NearestCorners nearest_{};
 };
 
 }  // namespace deformable

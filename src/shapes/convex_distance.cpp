@@ -148,10 +148,10 @@ class GapSearch {
     out_.depth = 0;
   }
 
-  ConvexGap run(const Vec& guess) {
+  ConvexGap run(const Vec& guess, const NearestCorners& known) {
     constexpr int kMostRounds = 200, kRoundsToFlats = 3;
     if (searchCurved(guess)) return out_;
-    if (!add(guess)) add({1, 0, 0});
+    if (!begin(known) && !add(guess)) add({1, 0, 0});
     Nearest nearest = nearestTo(simplex_);
     for (int round = 0; round < kMostRounds; ++round) {
       reduce(nearest, simplex_);
@@ -179,6 +179,21 @@ class GapSearch {
   }
 
  private:
+  /// @return whether there are corners to begin with
+  bool begin(const NearestCorners& known) {
+    for (int k = 0; k < known.count; ++k) {
+      SupportPair& d = simplex_.vertex[simplex_.count];
+      for (int side = 0; side < 2; ++side) {
+        assert(!set_[side]->box && !set_[side]->isCurved());
+        d.id[side] = known.corner[k][side];
+        d.point[side] = set_[side]->supportOf(d.id[side], {0, 0, 0});
+      }
+      d.between = d.point[1] - d.point[0];
+      if (isNew(d)) ++simplex_.count;
+    }
+    return simplex_.count > 0;
+  }
+
   /// Newton's method. A box of a tree is far away or overlaps, as a rule, so that a few
   /// rounds of the other method are enough.
   /// @return whether there is an answer
@@ -220,15 +235,19 @@ class GapSearch {
     return d;
   }
 
+  bool isNew(const SupportPair& d) const {
+    return std::none_of(simplex_.vertex, simplex_.vertex + simplex_.count,
+                        [&](const SupportPair& other) {
+                          return maxNorm(d.between - other.between) == 0;
+                        });
+  }
+
   /// @return whether the simplex has grown
   bool add(const Vec& direction) {
     const double length = norm(direction);
     if (!(length > 0x1p-500)) return false;
     const SupportPair d = measure((1 / length) * direction);
-    for (int i = 0; i < simplex_.count; ++i) {
-      const Vec change = d.between - simplex_.vertex[i].between;
-      if (maxNorm(change) == 0) return false;
-    }
+    if (!isNew(d)) return false;
     assert(simplex_.count < 4);
     simplex_.vertex[simplex_.count++] = d;
     return true;
@@ -302,13 +321,26 @@ class GapSearch {
       unsigned corners = 0;
       for (int i = 0; i < simplex_.count; ++i) {
         point = point + (simplex_.weight[i] / sum) * simplex_.vertex[i].point[side];
-        corners |= 1U << simplex_.vertex[i].id[side];
+        if (!set_[side]->shape && !set_[side]->box)
+          corners |= 1U << simplex_.vertex[i].id[side];
       }
       out_.point[side] = point;
       out_.corners[side] = corners;
     }
+    noteCorners();
     // A thin face may round to less.
     out_.distance = std::max(distance, norm(out_.point[1] - out_.point[0]));
+  }
+
+  void noteCorners() {
+    NearestCorners& nearest = out_.nearest;
+    nearest.count = 0;
+    if (simplex_.count > 3) return;
+    for (const PosedConvex* set : set_)
+      if (set->box || set->isCurved()) return;
+    for (; nearest.count < simplex_.count; ++nearest.count)
+      for (int side = 0; side < 2; ++side)
+        nearest.corner[nearest.count][side] = simplex_.vertex[nearest.count].id[side];
   }
 
   const PosedConvex* set_[2];
@@ -320,9 +352,9 @@ class GapSearch {
 }  // namespace
 
 ConvexGap convexGap(const PosedConvex& a, const PosedConvex& b, const Vec& guess,
-                    double enough, double contact) {
+                    double enough, double contact, const NearestCorners& known) {
   assert(!(enough < 0));
-  const ConvexGap gap = GapSearch(a, b, enough, contact).run(guess);
+  const ConvexGap gap = GapSearch(a, b, enough, contact).run(guess, known);
   assert(isConsistent(a, b, gap));
   assert(isUnit(gap.direction) || maxNorm(gap.direction) == 0);
   assert(!(gap.distance < 0) && !(gap.depth < 0));

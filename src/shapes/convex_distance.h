@@ -16,8 +16,9 @@ namespace deformable {
 /// @param enough  ends when the gap minus this distance is at least half of the distance
 /// of the points minus this distance. 0 or more.
 /// @param contact  ends when the points are not further apart than this
+/// @param known  corners to begin with: those of the same sets in other poses
 ConvexGap convexGap(const PosedConvex& a, const PosedConvex& b, const Vec& guess,
-                    double enough, double contact);
+                    double enough, double contact, const NearestCorners& known = {});
 
 }  // namespace deformable
 }  // namespace detail

@@ -94,6 +94,16 @@ Vec ConvexShape::support(const Vec& d) const {
                     core_);
 }
 
+Vec ConvexShape::support(const Vec& d, int& piece) const {
+  assert(!flat_);
+  return std::visit(
+      [&](const auto& of) {
+        piece = of.pieceAt(d);
+        return of.supportOf(piece, d);
+      },
+      core_);
+}
+
 int ConvexShape::pieceAt(const Vec& d) const {
   assert(!flat_);
   return std::visit([&d](const auto& of) { return of.pieceAt(d); }, core_);

@@ -82,6 +82,9 @@ class ConvexShape {
   /// 2^-50 of the size.
   Vec support(const Vec& direction) const;
 
+  /// @brief The same, and the number of its piece.
+  Vec support(const Vec& direction, int& piece) const;
+
   /// @brief The number of the piece of the core (struct Core) along a direction.
   int pieceAt(const Vec& direction) const;
 

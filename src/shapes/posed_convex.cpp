@@ -34,15 +34,15 @@ Vec cornerOf(const BodyBox& box, const Vec& d) {
 
 }  // namespace
 
-Vec PosedConvex::support(const Vec& direction, int& id) const {
-  id = 0;
+Vec PosedConvex::support(const Vec& direction, int& piece) const {
+  piece = 0;
   if (shape || box) {
     const Vec d = rotatedBack(pose.rotation, direction),
-              local = shape ? shape->support(d) : cornerOf(*box, d);
+              local = shape ? shape->support(d, piece) : cornerOf(*box, d);
     return posed(pose, local);
   }
-  id = pieceAt(direction);
-  return corner[id];
+  piece = pieceAt(direction);
+  return corner[piece];
 }
 
 int PosedConvex::pieceAt(const Vec& direction) const {

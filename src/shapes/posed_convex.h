@@ -21,8 +21,8 @@ struct PosedConvex {
   Vec corner[3];
 
   /// @brief A farthest point along a direction.
-  /// @param[out] id  of a triangle: the number of the corner
-  Vec support(const Vec& direction, int& id) const;
+  /// @param[out] piece  as pieceAt() of the direction; of a box 0
+  Vec support(const Vec& direction, int& piece) const;
 
   /// @brief The piece of its support function along a direction: of a triangle a corner,
   /// of a shape ConvexShape::pieceAt().
@@ -49,6 +49,13 @@ struct PosedConvex {
   Vec flatNormal(const Vec& direction) const;
 };
 
+/// @brief Up to three pairs of corners, one of each set, whose differences hold that of
+/// the nearest points. A search in a moment near to this one begins with them.
+struct NearestCorners {
+  int count;
+  int corner[3][2];
+};
+
 /// @brief The distance of two convex sets.
 struct ConvexGap {
   /// A unit direction from a to b, or 0; and the gap along it: b's least minus a's
@@ -64,6 +71,8 @@ struct ConvexGap {
   /// How deep the origin is inside the simplex that shows that the sets overlap; 0: there
   /// is none.
   double depth;
+  /// None of curved sets.
+  NearestCorners nearest;
 };
 
 /// @brief How deep the sets overlap, at least; negative: how far they are apart, at most.
