@@ -164,6 +164,30 @@ double ConvexAdvance::Side::reachAfter(double h, const Vec& n, const Vec& change
          dot(later, vecOf(now.pose.translation)) + h * dot(n, vecOf(rate.translation));
 }
 
+ConvexAdvance::Line ConvexAdvance::Side::farthestAfter(double h, const Vec& n,
+                                                       const Vec& change) const {
+  assert(!(h < 0));
+  if (!now.shape) {
+    Line best{}, line{};
+    double most = -HUGE_VAL;
+    for (int i = 0; i < 3; ++i) {
+      line = {dot(n, now.corner[i]), dot(n, velocity[i]) + dot(change, now.corner[i])};
+      if (!(line.value + h * line.rate > most)) continue;
+      most = line.value + h * line.rate;
+      best = line;
+    }
+    return best;
+  }
+  const Vec point =
+      now.shape->flat()
+          ? now.shape->flat()->foot()
+          : now.shape->support(rotatedBack(now.pose.rotation, n + h * change) +
+                               h * rotatedBack(rate.rotation, n));
+  const Vec place = posed(now.pose, point),
+            velocity_of_point = rotated(rate.rotation, point) + vecOf(rate.translation);
+  return {dot(n, place), dot(n, velocity_of_point) + dot(change, place)};
+}
+
 Vec ConvexAdvance::Side::center() const {
   if (now.shape) return posed(now.pose, now.shape->center());
   return (1. / 3) * (now.corner[0] + now.corner[1] + now.corner[2]);
@@ -254,60 +278,62 @@ double ConvexAdvance::gapAfter(double h, const State& state,
          h * tolerance_.rate - 0.5 * along.acceleration * h * h;
 }
 
+/// The time at which the two points that are nearest along the direction after `h` have
+/// no gap any more. The sets have none then either.
+double ConvexAdvance::endOfTangent(double h, const State& state,
+                                   const Separator& along) const {
+  const Line a = state.side[0].farthestAfter(h, along.direction, along.change),
+             b = state.side[1].farthestAfter(h, -1. * along.direction,
+                                             -1. * along.change);
+  const double value = -(a.value + b.value) - along.margin,
+               slope = -(a.rate + b.rate) - tolerance_.rate, bend = along.acceleration;
+  if (!(value > 0)) return 0;
+  const double root = std::sqrt(slope * slope + 2 * bend * value);
+  // The root of the parabola, in the form that does not cancel.
+  return slope > 0 ? (slope + root) / bend : 2 * value / (root - slope);
+}
+
 /// A step, at most to the end of the span, during which the direction separates the sets;
 /// negative if it does not separate them now. A step that ends with a gap had one all the
 /// time, since the gap is concave.
-double ConvexAdvance::step(double t, const State& state, const Separator& along) const {
+/// @param shorter  a step that is no longer than this one is of no use
+double ConvexAdvance::step(double t, const State& state, const Separator& along,
+                           double shorter) const {
   const double longest = std::min(t1_ - t, along.longest);
   assert(!(longest < 0) && !(along.margin < 0) && !(along.acceleration < 0));
-  double lower = 0, gap = gapAfter(0, state, along);
+  const double gap = gapAfter(0, state, along);
   if (!(gap > 0)) return -1;
-  double upper = longest, beyond = gapAfter(longest, state, along);
-  if (beyond >= 0) return longest;
-  // The line between the two values is below the gap, so that its root is a step that is
-  // too short. There the gap may be 0 and round to less; half of the margin is for that.
+  // Newton's method. Any two points of the sets have more gap than the sets, so that it
+  // comes to the end of the gap from above. At that end the gap may be 0 and round to
+  // less; half of the margin is for that.
   const double least = -0.5 * tolerance_.position;
   constexpr int kRounds = 12;
-  constexpr double kFar = 16;
+  double upper = HUGE_VAL, beyond = gap, at = 0;
   for (int round = 0; round < kRounds; ++round) {
-    const double chord = lower + (upper - lower) * (gap / (gap - beyond)),
-                 at = gapAfter(chord, state, along);
-    if (!(at >= least) || !(chord > lower)) break;
-    if (!(at > 0)) return chord;
-    const double slope = (beyond - at) / (upper - chord);
-    lower = chord;
-    gap = at;
-    // Beyond a time at which the gap is negative it stays negative. A long span has a
-    // chord that is far too steep: then only the order of magnitude is looked for.
-    const double middle = upper > kFar * lower
-                              ? std::sqrt(lower * upper)
-                              : std::min(0.5 * (lower + upper), lower - 2 * gap / slope),
-                 there = gapAfter(middle, state, along);
-    if (there >= 0) {
-      lower = middle;
-      gap = there;
-    } else {
-      upper = middle;
-      beyond = there;
-    }
-    // The root stays between them, by the signs of the gaps.
-    assert(lower <= upper * kUpward && gap >= 0 && !(beyond >= 0));
-    if (upper - lower < 0.1 * lower) break;
+    at = std::min(longest, endOfTangent(at, state, along));
+    if (!(at > shorter)) return shorter;
+    if (!(at < upper)) break;
+    upper = at;
+    beyond = gapAfter(upper, state, along);
+    if (beyond >= (upper < longest ? least : 0)) return upper;
   }
-  assert(0 <= lower && !(lower > longest * kUpward));
-  return lower;
+  // The line between two values is below the gap, so that its root is a step that is too
+  // short.
+  const double chord = upper * (gap / (gap - beyond));
+  assert(!(chord > upper * kUpward));
+  return gapAfter(chord, state, along) >= least ? chord : 0;
 }
 
 /// A direction that turns with a body stays at right angles to its flat sides, so that a
 /// large one does not shorten the step.
 double ConvexAdvance::fixedStep(double t, const State& state,
                                 const ConvexGap& gap) const {
-  if (flat_ >= 0) return step(t, state, inBody(flat_, t, state, gap));
-  double best = step(t, state, inWorld(gap.direction));
+  if (flat_ >= 0) return step(t, state, inBody(flat_, t, state, gap), -1);
+  double best = step(t, state, inWorld(gap.direction), -1);
   for (int k = 0; k < 2; ++k) {
     if (best >= t1_ - t) return best;
     if (!set_[k]->path->isTranslation())
-      best = std::max(best, step(t, state, inBody(k, t, state, gap)));
+      best = std::max(best, step(t, state, inBody(k, t, state, gap), best));
   }
   return best;
 }
@@ -366,7 +392,7 @@ double ConvexAdvance::turningStep(double t, const State& state, const ConvexGap&
   turn_speed_ = norm(along.change) * kUpward;
   along.acceleration = bendAt(turn_speed_);
   along.longest = kMostTurn / turn_speed_;
-  return step(t, state, along);
+  return step(t, state, along, -1);
 }
 
 /// The gap along the normal of a flat. Points of the other set that are lowest, or

@@ -89,6 +89,10 @@ class ConvexAdvance {
   double speed() const { return set_[0]->speed + set_[1]->speed; }
 
  private:
+  /// value + h rate.
+  struct Line {
+    double value, rate;
+  };
   /// A set at a time, with the velocities of its points.
   struct Side {
     PosedConvex now;
@@ -97,6 +101,8 @@ class ConvexAdvance {
     /// The largest coordinate n . x + h (n . x' + n' . x) of a point: along a direction
     /// that changes, `h` later, up to terms of second order.
     double reachAfter(double h, const Vec& n, const Vec& change) const;
+    /// The coordinate of the point that is farthest then, as a function of the time.
+    Line farthestAfter(double h, const Vec& n, const Vec& change) const;
     /// A point inside.
     Vec center() const;
     /// How far two points may be apart; 0 for a flat, of which only the foot counts.
@@ -130,7 +136,9 @@ class ConvexAdvance {
   double accelerationAlong(const Vec& direction) const;
   Separator inBody(int k, double t, const State& state, const ConvexGap& gap) const;
   double gapAfter(double h, const State& state, const Separator& separator) const;
-  double step(double t, const State& state, const Separator& separator) const;
+  double endOfTangent(double h, const State& state, const Separator& separator) const;
+  double step(double t, const State& state, const Separator& separator,
+              double shorter) const;
   double longestStep(double t, const State& state, const ConvexGap& gap);
   double fixedStep(double t, const State& state, const ConvexGap& gap) const;
   double turningStep(double t, const State& state, const ConvexGap& gap);
