@@ -188,6 +188,13 @@ ConvexAdvance::Line ConvexAdvance::Side::farthestAfter(double h, const Vec& n,
   return {dot(n, place), dot(n, velocity_of_point) + dot(change, place)};
 }
 
+MovingPoint ConvexAdvance::Side::cornerOf(int piece) const {
+  if (!now.shape) return {now.corner[piece], velocity[piece]};
+  const Vec point = now.shape->supportOf(piece, {0, 0, 0});
+  return {posed(now.pose, point),
+          rotated(rate.rotation, point) + vecOf(rate.translation)};
+}
+
 Vec ConvexAdvance::Side::center() const {
   if (now.shape) return posed(now.pose, now.shape->center());
   return (1. / 3) * (now.corner[0] + now.corner[1] + now.corner[2]);
@@ -330,6 +337,10 @@ double ConvexAdvance::fixedStep(double t, const State& state,
                                 const ConvexGap& gap) const {
   if (flat_ >= 0) return step(t, state, inBody(flat_, t, state, gap), -1);
   double best = step(t, state, inWorld(gap.direction), -1);
+  if (gap.nearest.count > 0 && best < t1_ - t)
+    best = std::max(
+        best,
+        step(t, state, turning(gap.direction, turnOfNearest(state, gap), t1_ - t), best));
   for (int k = 0; k < 2; ++k) {
     if (best >= t1_ - t) return best;
     if (!set_[k]->path->isTranslation())
@@ -345,13 +356,43 @@ double ConvexAdvance::longestStep(double t, const State& state, const ConvexGap&
   // Sets that are still apart after these probably move along each other.
   constexpr int kPlainSteps = 32;
   const double best = fixedStep(t, state, gap);
-  if (++num_steps_ <= kPlainSteps || flat_ >= 0 || best >= t1_ - t) return best;
+  if (++num_steps_ <= kPlainSteps || flat_ >= 0 || gap.nearest.count > 0 ||
+      best >= t1_ - t)
+    return best;
   // Where it does not help it is tried more and more rarely.
   constexpr int kMostDoublings = 6;
   if (num_steps_ % (1 << std::min(num_in_vain_, kMostDoublings)) != 0) return best;
   const double turning = turningStep(t, state, gap);
   num_in_vain_ = turning > best ? 0 : num_in_vain_ + 1;
   return std::max(best, turning);
+}
+
+/// How fast the direction between the nearest corners, edges or faces turns. Their
+/// differences are a corner, an edge or a face, to which it is at right angles.
+Vec ConvexAdvance::turnOfNearest(const State& state, const ConvexGap& gap) const {
+  Vec x[3], velocity[3];
+  const NearestCorners& nearest = gap.nearest;
+  for (int i = 0; i < nearest.count; ++i) {
+    const MovingPoint a = state.side[0].cornerOf(nearest.corner[i][0]),
+                      b = state.side[1].cornerOf(nearest.corner[i][1]);
+    x[i] = b.position - a.position;
+    velocity[i] = b.velocity - a.velocity;
+  }
+  if (nearest.count == 1) return (1 / norm(x[0])) * velocity[0];
+  const Vec edge = x[1] - x[0], edge_rate = velocity[1] - velocity[0];
+  if (nearest.count == 3) {
+    const Vec other = x[2] - x[0], other_rate = velocity[2] - velocity[0],
+              normal = cross(edge, other),
+              change = cross(edge_rate, other) + cross(edge, other_rate);
+    return ((dot(normal, gap.direction) < 0 ? -1 : 1) / norm(normal)) * change;
+  }
+  // Along the edge it follows the edge, across it the nearest point.
+  const double square = dot(edge, edge), share = -dot(edge, x[0]) / square;
+  const Vec across = cross(gap.direction, edge),
+            near_velocity = velocity[0] + share * edge_rate;
+  return (1 / square) *
+         (-dot(gap.direction, edge_rate) * edge +
+          (dot(near_velocity, across) / norm(x[0] + share * edge)) * across);
 }
 
 // The direction n + h m goes from the one at t to that at a later time, at which the sets
@@ -361,38 +402,45 @@ double ConvexAdvance::longestStep(double t, const State& state, const ConvexGap&
 // and it proves a distance above d while this is more than
 // d |n + h m| <= d (1 + h^2 |m|^2 / 2). Positions round by 1.5 of their error, since n .
 // z and h m . z are products by themselves. The rate is multiplied by |n + h m| too.
+ConvexAdvance::Separator ConvexAdvance::turning(const Vec& direction, const Vec& change,
+                                                double longest) const {
+  constexpr double kMostTurn = 0.5, kMostLength = 1.12;
+  Separator along{direction, change - dot(direction, change) * direction, 0,
+                  margin(1) + 0.5 * tolerance_.position, longest};
+  const double turn_speed = norm(along.change) * kUpward;
+  if (!(turn_speed < HUGE_VAL)) return inWorld(direction);
+  along.acceleration =
+      (kMostLength * acceleration_ +
+       turn_speed * (2 * speed() + tolerance_.distance * turn_speed + tolerance_.rate)) *
+      kUpward;
+  along.longest = std::min(longest, kMostTurn / turn_speed);
+  return along;
+}
+
+/// Along the direction to the nearest points of a later time.
 double ConvexAdvance::turningStep(double t, const State& state, const ConvexGap& gap) {
-  constexpr double kMostTurn = 0.5, kMostLength = 1.12, kLonger = 4;
+  constexpr double kLonger = 4;
   constexpr int kAttempts = 4;
-  const double d = tolerance_.distance, longest = t1_ - t, speed_of_both = speed();
+  const double longest = t1_ - t;
   const Vec& n = gap.direction;
-  const auto bendAt = [&](double turn_speed) {
-    return (kMostLength * acceleration_ +
-            turn_speed * (2 * speed_of_both + d * turn_speed + tolerance_.rate)) *
-           kUpward;
-  };
-  Separator along{n, {0, 0, 0}, 0, margin(1) + 0.5 * tolerance_.position, longest};
-  const double room = gapAfter(0, state, along);
+  const Separator before = turning(n, turn_, longest);
+  const double room = gapAfter(0, state, before);
   if (!(room > 0)) return -1;
   // They may be in contact at the end of the step that the bend alone would allow.
   double later = t;
   ConvexGap next{};
   horizon_ =
-      std::min({longest, kLonger * horizon_, std::sqrt(2 * room / bendAt(turn_speed_))});
+      std::min({longest, kLonger * horizon_, std::sqrt(2 * room / before.acceleration)});
   for (int attempt = 0; attempt < kAttempts && !(next.gap > margin(1)); ++attempt) {
     if (attempt > 0) horizon_ /= kLonger;
     later = std::min(t + horizon_, t1_);
     if (!(later > t)) return -1;
     const State there = stateAt(later);
-    next = convexGap(there.side[0].now, there.side[1].now, n, margin(1), 0, gap.nearest);
+    next = convexGap(there.side[0].now, there.side[1].now, n, margin(1), 0);
   }
   if (!(next.gap > margin(1))) return -1;
-  const Vec change = (1 / (later - t)) * (next.direction - n);
-  along.change = change - dot(n, change) * n;
-  turn_speed_ = norm(along.change) * kUpward;
-  along.acceleration = bendAt(turn_speed_);
-  along.longest = kMostTurn / turn_speed_;
-  return step(t, state, along, -1);
+  turn_ = (1 / (later - t)) * (next.direction - n);
+  return step(t, state, turning(n, turn_, longest), -1);
 }
 
 /// The gap along the normal of a flat. Points of the other set that are lowest, or

@@ -103,6 +103,8 @@ class ConvexAdvance {
     double reachAfter(double h, const Vec& n, const Vec& change) const;
     /// The coordinate of the point that is farthest then, as a function of the time.
     Line farthestAfter(double h, const Vec& n, const Vec& change) const;
+    /// A corner: of a triangle, or a piece of a core.
+    MovingPoint cornerOf(int piece) const;
     /// A point inside.
     Vec center() const;
     /// How far two points may be apart; 0 for a flat, of which only the foot counts.
@@ -142,6 +144,8 @@ class ConvexAdvance {
   double longestStep(double t, const State& state, const ConvexGap& gap);
   double fixedStep(double t, const State& state, const ConvexGap& gap) const;
   double turningStep(double t, const State& state, const ConvexGap& gap);
+  Separator turning(const Vec& direction, const Vec& change, double longest) const;
+  Vec turnOfNearest(const State& state, const ConvexGap& gap) const;
 
   const MovingConvex* set_[2];
   /// The set that is a plane or a halfspace; -1: none. Then the sets are apart along its
@@ -155,11 +159,11 @@ class ConvexAdvance {
   double set_acceleration_[2], axis_acceleration_[2];
   /// Bound on the relative acceleration of two points.
   double acceleration_{0};
-  /// The steps that were taken, and how fast the nearest features turned at the last one.
+  /// The steps that were taken, and how the nearest features turned at the last one.
   int num_steps_{0};
   /// How many steps in turn were no longer with a direction that turns.
   int num_in_vain_{0};
-  double turn_speed_{0};
+  Vec turn_{0, 0, 0};
   /// How much later the direction was that this was measured by.
   double horizon_{1};
   Vec suggested_{0, 0, 0};
