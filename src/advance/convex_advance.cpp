@@ -14,8 +14,7 @@ namespace detail {
 namespace deformable {
 namespace {
 
-double accelerationOf(const MovingConvex& set, double t0, double t1) {
-  const AccelerationBound bound = set.path->acceleration(t0, t1);
+double accelerationOf(const AccelerationBound& bound, const MovingConvex& set) {
   if (bound.isZero() && bound.per_displacement == 0) return 0;
   if (!set.shape) return accelerationOf(bound, set.triangle);
   const double radius = set.shape->flat() ? 0 : set.shape->box().radius;
@@ -95,7 +94,9 @@ ConvexAdvance::ConvexAdvance(const MovingConvex& a, const MovingConvex& b, doubl
       flat_(flatOf(a, b)),
       t1_(t1),
       tolerance_(tolerance),
-      set_acceleration_{accelerationOf(a, t0, t1), accelerationOf(b, t0, t1)},
+      path_acceleration_{a.path->acceleration(t0, t1), b.path->acceleration(t0, t1)},
+      set_acceleration_{accelerationOf(path_acceleration_[0], a),
+                        accelerationOf(path_acceleration_[1], b)},
       acceleration_(set_acceleration_[0] + set_acceleration_[1]) {
   assert(a.shape || b.shape);
   assert(!(a.shape && a.shape->flat()) || !(b.shape && b.shape->flat()));
@@ -109,31 +110,33 @@ ConvexAdvance::ConvexAdvance(const MovingConvex& a, const MovingConvex& b, doubl
 }
 
 void ConvexAdvance::ignoreInitiallyCloser() {
-  const State state = stateAt(0);
-  const ConvexGap gap = gapOf(state, 0);
+  const Moment now = momentAt(0);
+  const ConvexGap gap = gapOf(now, 0);
   if (gap.distance > tolerance_.distance + tolerance_.touching) return;
   const double own =
-      (gap.gap / growthOfNormal(state) - tolerance_.radii) * (1 - kNearerShare) -
+      (gap.gap / growthOfNormal(now) - tolerance_.radii) * (1 - kNearerShare) -
       2 * tolerance_.touching;
   assert(!(tolerance_.radii + own > tolerance_.distance));
   if (own > 0) tolerance_.distance = tolerance_.radii + own;
 }
 
-ConvexAdvance::Side ConvexAdvance::sideAt(int k, double t) const {
+PosedConvex ConvexAdvance::setAt(int k, double t) const {
   assert(isTimeOfStep(t));
   const MovingConvex& set = *set_[k];
-  Side side{};
-  side.now.shape = set.shape;
-  side.now.pose = set.path->pose(t);
-  side.rate = set.path->rate(t);
-  if (set.shape) return side;
-  for (int i = 0; i < 3; ++i) {
-    const MovingPoint point =
-        posedVertex(side.now.pose, side.rate, set.triangle.corner[0][i],
-                    set.triangle.corner[1][i], t);
-    side.now.corner[i] = point.position;
-    side.velocity[i] = point.velocity;
-  }
+  PosedConvex out{set.shape, nullptr, set.path->pose(t), {}};
+  for (int i = 0; i < 3 && !set.shape; ++i)
+    out.corner[i] =
+        posed(out.pose, set.triangle.corner[0][i], set.triangle.corner[1][i], t);
+  return out;
+}
+
+ConvexAdvance::Side ConvexAdvance::sideAt(int k, double t, const Moment& now) const {
+  const MovingConvex& set = *set_[k];
+  Side side{now.set[k], set.path->rate(t), {}};
+  for (int i = 0; i < 3 && !set.shape; ++i)
+    side.velocity[i] = posedVertex(side.now.pose, side.rate, set.triangle.corner[0][i],
+                                   set.triangle.corner[1][i], t)
+                           .velocity;
   return side;
 }
 
@@ -195,9 +198,10 @@ MovingPoint ConvexAdvance::Side::cornerOf(int piece) const {
           rotated(rate.rotation, point) + vecOf(rate.translation)};
 }
 
-Vec ConvexAdvance::Side::center() const {
-  if (now.shape) return posed(now.pose, now.shape->center());
-  return (1. / 3) * (now.corner[0] + now.corner[1] + now.corner[2]);
+Vec ConvexAdvance::Moment::center(int k) const {
+  const PosedConvex& of = set[k];
+  if (of.shape) return posed(of.pose, of.shape->center());
+  return (1. / 3) * (of.corner[0] + of.corner[1] + of.corner[2]);
 }
 
 double ConvexAdvance::Side::size() const {
@@ -229,9 +233,9 @@ double ConvexAdvance::accelerationAlong(const Vec& direction) const {
 
 /// A matrix that is no rotation changes the length of the normal of a flat. How much
 /// longer than now it may become.
-double ConvexAdvance::growthOfNormal(const State& state) const {
+double ConvexAdvance::growthOfNormal(const Moment& now) const {
   if (flat_ < 0 || set_[flat_]->path->isTranslation()) return 1;
-  const PosedConvex& flat = state.side[flat_].now;
+  const PosedConvex& flat = now.set[flat_];
   const MotionPath& path = *set_[flat_]->path;
   const double length = norm(rotated(flat.pose.rotation, flat.shape->flat()->normal));
   assert(!(length > path.stretch() * kUpward + path.rotationError()));
@@ -265,14 +269,14 @@ ConvexAdvance::Separator ConvexAdvance::inBody(int k, double t, const State& sta
   const double longest = std::max(path.stretch(), 1.) * length, turn = path.turnSpeed(),
                speed = set_[0]->speed + set_[1]->speed;
   double apart = std::max(gap.distance, gap.gap);
-  if (flat_ >= 0) apart = norm(state.side[1].center() - state.side[0].center());
+  if (flat_ >= 0) apart = norm(state.now.center(1) - state.now.center(0));
   apart += speed * (t1_ - t);
   for (int side = 0; side < 2; ++side)
     apart += state.side[side].size() * set_[side]->path->stretch();
   const double turning =
-      2 * turn * speed + path.acceleration(t, t1_).of({0, 0, 0}, apart * kUpward);
+      2 * turn * speed + path_acceleration_[k].of({0, 0, 0}, apart * kUpward);
   return {rotated(r, m), rotated(v, m), (acceleration_ + turning) * longest * kUpward,
-          flat_ >= 0 ? margin(growthOfNormal(state)) : margin(1) * longest * kUpward,
+          flat_ >= 0 ? margin(growthOfNormal(state.now)) : margin(1) * longest * kUpward,
           0.5 / turn};
 }
 
@@ -435,8 +439,8 @@ double ConvexAdvance::turningStep(double t, const State& state, const ConvexGap&
     if (attempt > 0) horizon_ /= kLonger;
     later = std::min(t + horizon_, t1_);
     if (!(later > t)) return -1;
-    const State there = stateAt(later);
-    next = convexGap(there.side[0].now, there.side[1].now, n, margin(1), 0);
+    const Moment there = momentAt(later);
+    next = convexGap(there.set[0], there.set[1], n, margin(1), 0);
   }
   if (!(next.gap > margin(1))) return -1;
   turn_ = (1 / (later - t)) * (next.direction - n);
@@ -445,13 +449,13 @@ double ConvexAdvance::turningStep(double t, const State& state, const ConvexGap&
 
 /// The gap along the normal of a flat. Points of the other set that are lowest, or
 /// highest, up to rounding count as one feature.
-ConvexGap ConvexAdvance::flatGap(const State& state) const {
-  const Side &flat = state.side[flat_], &other = state.side[1 - flat_];
-  const FlatShape& shape = *flat.now.shape->flat();
-  const Vec normal = rotated(flat.now.pose.rotation, shape.normal),
-            up = (1 / norm(normal)) * normal, foot = flat.center();
-  const Extreme low = extremeOf(other.now, -1. * up, tolerance_.position),
-                high = extremeOf(other.now, up, tolerance_.position);
+ConvexGap ConvexAdvance::flatGap(const Moment& now) const {
+  const PosedConvex &flat = now.set[flat_], &other = now.set[1 - flat_];
+  const FlatShape& shape = *flat.shape->flat();
+  const Vec normal = rotated(flat.pose.rotation, shape.normal),
+            up = (1 / norm(normal)) * normal, foot = now.center(flat_);
+  const Extreme low = extremeOf(other, -1. * up, tolerance_.position),
+                high = extremeOf(other, up, tolerance_.position);
   const double lowest = dot(up, low.point - foot), highest = dot(up, high.point - foot);
   const bool is_below = !shape.is_solid && -highest > lowest;
   const Extreme& near = is_below ? high : low;
@@ -477,22 +481,21 @@ ConvexGap ConvexAdvance::flatGap(const State& state) const {
 
 /// The direction between the centers, or the suggested one if it shows a larger gap.
 /// Newton's method needs a good one.
-Vec ConvexAdvance::firstGuess(const State& state) const {
-  const Vec way = state.side[1].center() - state.side[0].center();
-  const bool is_curved = state.side[0].now.isCurved() || state.side[1].now.isCurved();
+Vec ConvexAdvance::firstGuess(const Moment& now) const {
+  const Vec way = now.center(1) - now.center(0);
+  const bool is_curved = now.set[0].isCurved() || now.set[1].isCurved();
   if (!is_curved || !(maxNorm(suggested_) > 0)) return way;
-  const auto gapAlong = [&state](const Vec& n) {
-    return -state.side[1].now.reach(-1. * n) - state.side[0].now.reach(n);
+  const auto gapAlong = [&now](const Vec& n) {
+    return -now.set[1].reach(-1. * n) - now.set[0].reach(n);
   };
   const double length = norm(way);
   return length > 0 && gapAlong(way) > length * gapAlong(suggested_) ? way : suggested_;
 }
 
-ConvexGap ConvexAdvance::gapOf(const State& state, double contact) const {
-  if (flat_ >= 0) return flatGap(state);
-  const Vec guess = maxNorm(guess_) > 0 ? guess_ : firstGuess(state);
-  return convexGap(state.side[0].now, state.side[1].now, guess, margin(1), contact,
-                   nearest_);
+ConvexGap ConvexAdvance::gapOf(const Moment& now, double contact) const {
+  if (flat_ >= 0) return flatGap(now);
+  const Vec guess = maxNorm(guess_) > 0 ? guess_ : firstGuess(now);
+  return convexGap(now.set[0], now.set[1], guess, margin(1), contact, nearest_);
 }
 
 /// Each search ends where the distance is not above the gap by more than a tenth of what
@@ -501,16 +504,15 @@ ConvexGap ConvexAdvance::nearestAt(double t, double error) const {
   constexpr int kMostSearches = 16;
   assert(!(error < 0));
   constexpr double kShare = 0.9;
-  const State state = stateAt(t);
-  ConvexGap gap = gapOf(state, 0);
+  const Moment now = momentAt(t);
+  ConvexGap gap = gapOf(now, 0);
   double enough = margin(1);
   for (int i = 0; i < kMostSearches && flat_ < 0; ++i) {
     if (gap.depth > 0 || gap.distance - gap.gap <= error) break;
     const double more = gap.gap + kShare * (gap.distance - gap.gap);
     if (!(more > enough)) break;
     enough = more;
-    gap = convexGap(state.side[0].now, state.side[1].now, gap.direction, enough, 0,
-                    gap.nearest);
+    gap = convexGap(now.set[0], now.set[1], gap.direction, enough, 0, gap.nearest);
   }
   return gap;
 }
@@ -518,15 +520,15 @@ ConvexGap ConvexAdvance::nearestAt(double t, double error) const {
 /// Prefers the direction of a flat side: where the gap is a few roundings wide another
 /// one may happen to show as much.
 ConvexGap ConvexAdvance::gapAt(double t) const {
-  const State state = stateAt(t);
-  ConvexGap gap = gapOf(state, 0);
+  const Moment now = momentAt(t);
+  ConvexGap gap = gapOf(now, 0);
   if (flat_ >= 0) return gap;
-  for (const Side& side : state.side) {
-    Vec n = side.now.flatNormal(gap.direction);
+  for (const PosedConvex& set : now.set) {
+    Vec n = set.flatNormal(gap.direction);
     const double length = norm(n);
     if (!(length > 0x1p-500) || !(gap.gap > 0)) continue;
     n = ((dot(n, gap.direction) < 0 ? -1 : 1) / length) * n;
-    const double along = -state.side[1].now.reach(-1. * n) - state.side[0].now.reach(n);
+    const double along = -now.set[1].reach(-1. * n) - now.set[0].reach(n);
     if (!(along >= gap.gap - tolerance_.position)) continue;
     gap.direction = n;
     gap.gap = along;
@@ -538,25 +540,25 @@ ConvexGap ConvexAdvance::gapAt(double t) const {
 /// Of a flat, and of cores that are apart, the gap is the largest there is.
 Penetration ConvexAdvance::penetrationAt(double t, const ConvexGap& gap) const {
   if (flat_ >= 0 || gap.gap > -tolerance_.touching) return {gap.direction, -gap.gap};
-  const State state = stateAt(t);
-  return penetrationOf(state.side[0].now, state.side[1].now);
+  const Moment now = momentAt(t);
+  return penetrationOf(now.set[0], now.set[1]);
 }
 
 ConvexAdvance::Answer ConvexAdvance::advance(double& t, double t_stop, int& steps,
                                              AdvanceCounts& counts) {
   ConvexGap gap;
   return deformable::advance(
-      t, t1_, t_stop, steps, counts, [this](double time) { return stateAt(time); },
-      [this, &gap](const State& state) {
-        const double contact = tolerance_.distance * growthOfNormal(state) +
+      t, t1_, t_stop, steps, counts, [this](double time) { return momentAt(time); },
+      [this, &gap](const Moment& now) {
+        const double contact = tolerance_.distance * growthOfNormal(now) +
                                tolerance_.touching - tolerance_.position;
-        gap = gapOf(state, contact);
+        gap = gapOf(now, contact);
         return gap.distance <= contact;
       },
-      [this, &gap](double time, const State& state) {
+      [this, &gap](double time, const Moment& now) {
         guess_ = gap.direction;
         nearest_ = gap.nearest;
-        return longestStep(time, state, gap);
+        return longestStep(time, stateAt(time, now), gap);
       });
 }
 
@@ -566,7 +568,7 @@ double ConvexAdvance::proveContact(double t, double width) const {
 }
 
 bool ConvexAdvance::provesContactAt(double t) const {
-  const ConvexGap gap = gapOf(stateAt(t), 0);
+  const ConvexGap gap = gapOf(momentAt(t), 0);
   return gap.depth > 4 * tolerance_.position ||
          gap.distance + tolerance_.position <= tolerance_.distance;
 }

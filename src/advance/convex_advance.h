@@ -78,7 +78,7 @@ class ConvexAdvance {
   ConvexGap nearestAt(double t, double error) const;
 
   /// @brief The gap of the cores, without a look at their flat sides.
-  ConvexGap coreGapAt(double t) const { return gapOf(stateAt(t), 0); }
+  ConvexGap coreGapAt(double t) const { return gapOf(momentAt(t), 0); }
 
   /// @brief The least translation that parts the cores.
   /// @param gap  gapAt() of that time
@@ -89,13 +89,19 @@ class ConvexAdvance {
   double speed() const { return set_[0]->speed + set_[1]->speed; }
 
  private:
+  /// Both sets at a time.
+  struct Moment {
+    PosedConvex set[2];
+    /// A point inside.
+    Vec center(int k) const;
+  };
   /// value + h rate.
   struct Line {
     double value, rate;
   };
   /// A set at a time, with the velocities of its points.
   struct Side {
-    PosedConvex now;
+    const PosedConvex& now;
     PoseRate rate;
     Vec velocity[3];
     /// The largest coordinate n . x + h (n . x' + n' . x) of a point: along a direction
@@ -105,18 +111,21 @@ class ConvexAdvance {
     Line farthestAfter(double h, const Vec& n, const Vec& change) const;
     /// A corner: of a triangle, or a piece of a core.
     MovingPoint cornerOf(int piece) const;
-    /// A point inside.
-    Vec center() const;
     /// How far two points may be apart; 0 for a flat, of which only the foot counts.
     double size() const;
   };
   struct State {
+    const Moment& now;
     Side side[2];
   };
-  Side sideAt(int k, double t) const;
-  State stateAt(double t) const { return {{sideAt(0, t), sideAt(1, t)}}; }
-  ConvexGap gapOf(const State& state, double contact) const;
-  ConvexGap flatGap(const State& state) const;
+  PosedConvex setAt(int k, double t) const;
+  Moment momentAt(double t) const { return {{setAt(0, t), setAt(1, t)}}; }
+  Side sideAt(int k, double t, const Moment& now) const;
+  State stateAt(double t, const Moment& now) const {
+    return {now, {sideAt(0, t, now), sideAt(1, t, now)}};
+  }
+  ConvexGap gapOf(const Moment& now, double contact) const;
+  ConvexGap flatGap(const Moment& now) const;
   /// A direction that is fixed in the world or in a body, or that turns with the nearest
   /// features.
   struct Separator {
@@ -132,8 +141,8 @@ class ConvexAdvance {
   double margin(double growth) const {
     return 2 * tolerance_.position + growth * tolerance_.distance;
   }
-  double growthOfNormal(const State& state) const;
-  Vec firstGuess(const State& state) const;
+  double growthOfNormal(const Moment& now) const;
+  Vec firstGuess(const Moment& now) const;
   Separator inWorld(const Vec& direction) const;
   double accelerationAlong(const Vec& direction) const;
   Separator inBody(int k, double t, const State& state, const ConvexGap& gap) const;
@@ -154,6 +163,8 @@ class ConvexAdvance {
   double t1_;
   /// The tolerance of this pair, with its distance of contact.
   BodyTolerance tolerance_;
+  /// Bounds on the acceleration of each path in the span.
+  AccelerationBound path_acceleration_[2];
   /// Bounds on the acceleration of the points of each set, and of the part of it along
   /// the axis of a turn.
   double set_acceleration_[2], axis_acceleration_[2];

@@ -110,17 +110,22 @@ Nearest nearestTo(const Simplex& s) {
   return best;
 }
 
-/// Keeps the vertices that hold the nearest point.
+/// Keeps the vertices that hold the nearest point, in their order.
 void reduce(const Nearest& nearest, Simplex& s) {
   assert(1 <= nearest.count && nearest.count <= 3);
-  Simplex out;
-  out.count = nearest.count;
+  constexpr double kNone = -1;
+  double weight[4] = {kNone, kNone, kNone, kNone};
   for (int i = 0; i < nearest.count; ++i) {
     assert(nearest.vertex[i] < s.count && nearest.weight[i] > 0);
-    out.vertex[i] = s.vertex[nearest.vertex[i]];
-    out.weight[i] = nearest.weight[i];
+    weight[nearest.vertex[i]] = nearest.weight[i];
   }
-  s = out;
+  int count = 0;
+  for (int i = 0; i < s.count; ++i) {
+    if (weight[i] == kNone) continue;
+    if (count < i) s.vertex[count] = s.vertex[i];
+    s.weight[count++] = weight[i];
+  }
+  s.count = count;
 }
 
 /// Whether a gap is proved and the distance is met: no direction shows more than how far
