@@ -69,10 +69,11 @@ AdvanceAnswer advance(double& t, double t1, double t_stop, int& steps,
 /// time that is tried is four times as long after t as the one before.
 /// @param position_error  the first time is that in which points move by this way
 /// @param speed  of the points
+/// @param likely  times that are not this long after t are not tried
 /// @param isProved  isProved(time)
 template <typename IsProved>
 double provedTimeAfter(double t, double width, double position_error, double speed,
-                       IsProved&& isProved) {
+                       double likely, IsProved&& isProved) {
   constexpr double kFactor = 4;
   assert(0 <= t && t <= 1 && !(position_error < 0) && !(speed < 0));
   const double longest = std::min(width, 1 - t);
@@ -82,7 +83,7 @@ double provedTimeAfter(double t, double width, double position_error, double spe
     const double time = std::min(t + std::min(h, longest), 1.);
     if (!(time > t)) return t;
     assert(time <= 1 && time <= t + width);
-    if (isProved(time)) return time;
+    if (!(h < std::min(likely, longest)) && isProved(time)) return time;
     if (h >= longest) return t;
   }
 }

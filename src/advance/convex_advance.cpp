@@ -337,10 +337,10 @@ double ConvexAdvance::step(double t, const State& state, const Separator& along,
 
 /// A direction that turns with a body stays at right angles to its flat sides, so that a
 /// large one does not shorten the step.
-double ConvexAdvance::fixedStep(double t, const State& state,
-                                const ConvexGap& gap) const {
+double ConvexAdvance::fixedStep(double t, const State& state, const ConvexGap& gap) {
   if (flat_ >= 0) return step(t, state, inBody(flat_, t, state, gap), -1);
   double best = step(t, state, inWorld(gap.direction), -1);
+  closing_speed_ = best > 0 ? (gap.gap - margin(1)) / best : 0;
   if (gap.nearest.count > 0 && best < t1_ - t)
     best = std::max(
         best,
@@ -563,7 +563,11 @@ ConvexAdvance::Answer ConvexAdvance::advance(double& t, double t_stop, int& step
 }
 
 double ConvexAdvance::proveContact(double t, double width) const {
-  return provedTimeAfter(t, width, tolerance_.position, speed(),
+  // A pair in contact that is not proved yet has to come nearer by three errors at least.
+  constexpr double kLeastErrors = 3;
+  const double likely =
+      closing_speed_ > 0 ? kLeastErrors * tolerance_.position / closing_speed_ : 0;
+  return provedTimeAfter(t, width, tolerance_.position, speed(), likely,
                          [this](double time) { return provesContactAt(time); });
 }
 

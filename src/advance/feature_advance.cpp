@@ -225,7 +225,7 @@ double FeatureAdvance::proveWithin(double t, double width) const {
   double speed = 0;
   for (int k = 0; k < moment.polygon.count(); ++k)
     speed = std::max(speed, norm(moment.velocities[k]));
-  return provedTimeAfter(t, width, tolerance_.position, speed, [this](double time) {
+  return provedTimeAfter(t, width, tolerance_.position, speed, 0, [this](double time) {
     const Moment later(*this, time);
     const double error =
         DistanceTolerance(tolerance_.distance, later.polygon.size()).distance_error;

@@ -427,7 +427,7 @@ double TriangleAdvance::proveContact(double t, double width) const {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       speed = std::max(speed, norm(state.v[1][j] - state.v[0][i]));
-  return provedTimeAfter(t, width, tolerance_.position, speed,
+  return provedTimeAfter(t, width, tolerance_.position, speed, 0,
                          [this](double time) { return provesContactAt(time); });
 }
 
