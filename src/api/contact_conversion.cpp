@@ -86,10 +86,9 @@ DescribedContact ContactDescriber::operator()(const FeatureContact& contact) con
 
 void ContactDescriber::addGeometry(const FeatureContact& contact,
                                    DescribedContact& out) const {
-  const std::size_t num_first = contact.kind == ContinuousContactKind::kEdgeEdge ? 2 : 1;
   VertexPath x[4]{};
-  for (std::size_t i = 0; i < numVertices(contact.kind); ++i) {
-    const int side = (i < num_first) == contact.first_on_a ? 0 : 1;
+  for (unsigned i = 0; i < numVertices(contact.kind); ++i) {
+    const int side = isPointOfA(contact.kind, contact.first_on_a, i) ? 0 : 1;
     x[i] = motion_[side] ? motion_[side]->tangentAt(contact.vertices[i], contact.toc_lo)
                          : mesh_[side].frames[contact.vertices[i]];
   }

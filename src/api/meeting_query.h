@@ -15,9 +15,7 @@ namespace detail {
 /// @throws fcl::Exception  a distance is negative or not finite, a time not in [0, 1]
 inline deformable::MeetingQuery meetingQueryOf(const BroadPhaseSettings& settings) {
   requireDistance(settings.distance, "request.min_distance");
-  if (!(settings.t_max >= 0 && settings.t_max <= 1))
-    throw Exception("request.t_max is " + std::to_string(settings.t_max) +
-                    "; it must be in [0, 1]");
+  requireTimeLimit(settings.t_max, "request.t_max");
   deformable::MeetingQuery query;
   query.distance = settings.distance;
   query.latest = settings.t_max;

@@ -108,7 +108,7 @@ bool PartingDirection::areApart(const BodyPart& a, const BodyPart& b,
   poses = posesAt(t[0]);
   gap[0] = gapAt(t[0], a, b, poses, directionAt(poses, is_below));
   if (!(gap[0] > 0) || room_ < 0) return false;
-  // The parts took room.
+  // gapAt() has subtracted from the room what the parts take.
   assert(room_ <= room);
   room_ += 2 * (room - room_);
   return true;

@@ -136,7 +136,7 @@ void BroadPhase::removeSources(SlotNumber i) {
     assert(sources_[gone].slot == i);
     at(i).source = sources_[gone].next;
     if (gone != last) {
-      // Who refers to the last one refers to its new place.
+      // The last source moves into the hole. Its list is told the new number.
       std::size_t* reference = &at(sources_[last].slot).source;
       while (*reference != last) reference = &sources_[*reference].next;
       *reference = gone;
@@ -394,7 +394,8 @@ void BroadPhase::findResting(const MeetingQuery& query,
 /// The pairs of a stale object that rests with all others that rest.
 void BroadPhase::findRestingOf(SlotNumber i, std::vector<SlotPair>& near) const {
   const auto add_to = [&](SlotNumber k) {
-    // Two stale ones find each other: once is enough.
+    // Of two stale objects, each finds the other. The one with the lower number adds the
+    // pair.
     if (k != i && !(is_stale_[static_cast<std::size_t>(k)] && k < i))
       near.emplace_back(i, k);
   };

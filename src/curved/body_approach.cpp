@@ -405,7 +405,7 @@ void BodyApproach::Search::decidePair(const PartWork& work, const Pair& pair) {
     const bool are_apart =
         between.advance(t, end, left, counts_) == AdvanceAnswer::kApart;
     assert(before <= t && t <= end);
-    // Up to t, too, no more was proved.
+    // Up to t the proof holds for the lowered distance only.
     if (lowered > 0 && (are_apart || t > before))
       given_up_ = std::min(given_up_, proved_ - lowered);
     if (are_apart) return;

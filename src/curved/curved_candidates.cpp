@@ -118,6 +118,7 @@ class CandidateList {
         out.back().window_hi = std::max(out.back().window_hi, candidate.window_hi);
       }
       last = &name;
+      assert(isPartOfStep(out.back().window_lo, out.back().window_hi));
     }
     return out;
   }

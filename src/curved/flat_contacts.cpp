@@ -65,6 +65,8 @@ QueryAnswer queryFlats(const PosedFlat& a, const PosedFlat& b,
       assert(!(t < 0) && !(t > 1));
       contact.toc_lo = t * (1 - 0x1p-48);
       contact.toc_hi = contact.toc_lo;
+      // They are not in contact yet.
+      assert(!(begin + (end - begin) * contact.toc_lo < 0));
       contact.within_tolerance = true;
       if (contact.toc_lo > options.t_max) return answer;
     }

@@ -169,6 +169,7 @@ void keepFirst(std::vector<CurvedContact>& contacts) {
   for (const CurvedContact& contact : contacts)
     first_hi = std::min(first_hi, contact.toc_hi);
   while (contacts.size() > 1 && contacts.back().toc_lo > first_hi) contacts.pop_back();
+  assert(contacts.empty() || contacts.front().toc_lo <= first_hi);
 }
 
 }  // namespace

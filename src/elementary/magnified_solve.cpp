@@ -58,7 +58,7 @@ struct EndsCross : CrossCoefficients {
 };
 
 /// The volume over the interval with a bound on the error of each coefficient, from the
-/// norms at both ends. See StepVolume in elementary.cpp, which has one bound for the
+/// norms at both ends. See StepVolume in moving_pair.h, which has one bound for the
 /// whole step, and is faster.
 struct EndsVolume : VolumeCubic {
   double error[4];
@@ -528,7 +528,7 @@ ElementaryResult solveMagnified(ExactQuery& query, double toc_err, double t_stop
                                 double t_max) {
   assert(toc_err > 0 && 0 < t_max && t_max <= 1 && !query.touchInFrame(0));
   const int clock_exponent = query.digits().clock_exponent;
-  // On another clock t_max is a fraction, which intervals cannot represent.
+  // In units of another clock t_max is a fraction, which intervals cannot represent.
   if (t_max < 1 && clock_exponent != 0)
     return {Answer::kUnsure, 0, t_max, DecidedBy::kExact};
   Solver<4> solver(query, toc_err);

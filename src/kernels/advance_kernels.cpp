@@ -170,7 +170,7 @@ class AdvancingPairs {
     EightPoints eight;
     double time[kEight], rate[kEight], distance[kEight];
     for (std::size_t lane = 0; lane < kEight; ++lane) {
-      // The last one fills up the eight.
+      // Copies of the last pair fill the empty lanes.
       const PairOnWay& pair = on_way[std::min(lane, count - 1)];
       number_[lane] = pair.number;
       eight.set(lane, pairs[pair.number].x);
@@ -412,7 +412,7 @@ unsigned approachAtStart(ContinuousContactKind kind, const TrianglePair* pairs,
                          double cull_distance, Approach (&answers)[8]) {
   assert(1 <= count && count <= kEight && distance > 0x1p-150);
   assert(distance <= cull_distance && cull_distance < 0x1p150);
-  // The last one fills up the eight.
+  // Copies of the last pair fill the empty lanes.
   std::uint32_t eight_codes[kEight];
   for (std::size_t lane = 0; lane < kEight; ++lane)
     eight_codes[lane] = codes[lane < count ? lane : count - 1];

@@ -451,7 +451,7 @@ FCL_CCD_INLINE HalfAxes boxOf(const TreeVertex& x) {
 /// matters only for the shift.
 template <ContinuousContactKind kind, bool kShifted, int kFrame>
 FCL_CCD_INLINE HalfAxes depths(const TrianglePair& pair, std::size_t bit,
-                               const KdopShift* shift, const KdopShift* turned_shift) {
+                               const KdopShift* shift, const KdopShift* exchanged_shift) {
   const auto box = [&pair](std::size_t i) { return boxOf<kFrame>(*pair.x[i]); };
   HalfAxes first, second;
   const KdopShift* add = shift;
@@ -462,7 +462,7 @@ FCL_CCD_INLINE HalfAxes depths(const TrianglePair& pair, std::size_t bit,
     const std::size_t face = on_a ? 3 : 0;
     first = box(bit);
     second = larger(larger(box(face), box(face + 1)), box(face + 2));
-    add = on_a ? shift : turned_shift;
+    add = on_a ? shift : exchanged_shift;
   } else {
     const unsigned char(&ends)[4] = kFeaturePoints[bit];
     first = larger(box(ends[0]), box(ends[1]));
@@ -492,16 +492,17 @@ FCL_CCD_INLINE std::size_t keepCodes(std::uint32_t* codes, std::size_t count,
 template <ContinuousContactKind kind, bool kShifted>
 FCL_CCD_INLINE std::size_t cullFeaturesWhere(const TrianglePair* pairs,
                                              const KdopShift* shift,
-                                             const KdopShift* turned_shift, float latest,
-                                             const float* gaps, std::uint32_t* codes,
-                                             std::size_t count, TimeWindow* windows) {
+                                             const KdopShift* exchanged_shift,
+                                             float latest, const float* gaps,
+                                             std::uint32_t* codes, std::size_t count,
+                                             TimeWindow* windows) {
   const auto at0 = [&](std::uint32_t code) {
     return depths<kind, kShifted, 0>(pairs[codePair(code)], codeBit(code), shift,
-                                     turned_shift);
+                                     exchanged_shift);
   };
   const auto at1 = [&](std::uint32_t code) {
     return depths<kind, kShifted, 1>(pairs[codePair(code)], codeBit(code), shift,
-                                     turned_shift);
+                                     exchanged_shift);
   };
   // One loop for each comparison of the boxes, so that no branch depends on the boxes.
   if (gaps)
@@ -536,30 +537,30 @@ FCL_CCD_INLINE std::size_t cullFeaturesWhere(const TrianglePair* pairs,
 }
 
 std::size_t cullFeatures(ContinuousContactKind kind, const TrianglePair* pairs,
-                         const KdopShift* shift, const KdopShift* turned_shift,
+                         const KdopShift* shift, const KdopShift* exchanged_shift,
                          float latest, const float* gaps, std::uint32_t* codes,
                          std::size_t count, TimeWindow* windows) {
   constexpr ContinuousContactKind kVf = ContinuousContactKind::kVertexFace,
                                   kEe = ContinuousContactKind::kEdgeEdge;
   assert((kind == kVf || kind == kEe) && (gaps || windows));
-  assert(!shift || turned_shift);
+  assert(!shift || exchanged_shift);
   const auto cull =
       kind == kVf
           ? (shift ? &cullFeaturesWhere<kVf, true> : &cullFeaturesWhere<kVf, false>)
           : (shift ? &cullFeaturesWhere<kEe, true> : &cullFeaturesWhere<kEe, false>);
-  return cull(pairs, shift, turned_shift, latest, gaps, codes, count, windows);
+  return cull(pairs, shift, exchanged_shift, latest, gaps, codes, count, windows);
 }
 
 std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
-                          const KdopShift* turned_shift, std::uint32_t* codes,
+                          const KdopShift* exchanged_shift, std::uint32_t* codes,
                           std::size_t count) {
-  assert(!shift || turned_shift);
+  assert(!shift || exchanged_shift);
   return keepCodes(codes, count, [&](std::uint32_t code) HWY_ATTR {
     const TreeVertex* x[5];
     crossingPoints(pairs, code, x);
     const bool on_a = codeBit(code) < 3;
     HalfAxes edge = larger(boxOf<0>(*x[0]), boxOf<0>(*x[1]));
-    if (shift) edge = movedBy(edge, load<16>((on_a ? shift : turned_shift)->t0.half));
+    if (shift) edge = movedBy(edge, load<16>((on_a ? shift : exchanged_shift)->t0.half));
     const HalfAxes face =
         larger(larger(boxOf<0>(*x[2]), boxOf<0>(*x[3])), boxOf<0>(*x[4]));
     return !isAnyNegative(edge + swapHalves(face));

@@ -189,7 +189,7 @@ unsigned mayComeWithin(ContinuousContactKind kind, const TrianglePair* pairs,
                        std::size_t count, const DistanceRequest& request,
                        const PairBends& bends) {
   assert(1 <= count && count <= kEight && request.distance >= 0);
-  // The last one fills up the eight.
+  // Copies of the last pair fill the empty lanes.
   std::uint32_t eight_codes[kEight];
   TimeWindow eight_windows[kEight];
   for (std::size_t lane = 0; lane < kEight; ++lane) {

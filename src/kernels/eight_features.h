@@ -86,7 +86,7 @@ struct StartPoints {
   }
 };
 
-/// As Difference::at() in elementary.cpp. There is no special case for 0 and 1. So if a
+/// As Difference::at() in moving_pair.h. There is no special case for 0 and 1. So if a
 /// number is not finite in one frame, the result is not finite at any time.
 FCL_CCD_INLINE Vectors at(const Vectors& t0, const Vectors& t1, const Doubles& t) {
   const Doubles s = broadcast<kEight>(1.) - t;

@@ -287,7 +287,7 @@ struct Kernels {
 
   /// Keeps, of pairs of features of one kind, those whose moving boxes overlap, with
   /// their windows: overlapWindow() of each. Returns their number.
-  /// @param shift, turned_shift  added to boxes of a's features, and the same with the
+  /// @param shift, exchanged_shift  added to boxes of a's features, and the same with the
   /// halves exchanged; null: none
   /// @param latest  windows that begin later are left out
   /// @param gaps  a gap for each triangle pair. Its features are left out if they are
@@ -296,7 +296,7 @@ struct Kernels {
   /// @param codes  with room for 15 more, which may be written
   /// @param windows  null: only boxes at t = 0 are compared, with gaps
   std::size_t (*cullFeatures)(ContinuousContactKind kind, const TrianglePair* pairs,
-                              const KdopShift* shift, const KdopShift* turned_shift,
+                              const KdopShift* shift, const KdopShift* exchanged_shift,
                               float latest, const float* gaps, std::uint32_t* codes,
                               std::size_t count, TimeWindow* windows);
 
@@ -304,7 +304,7 @@ struct Kernels {
   /// of the code are the edges of a, bits 3-5 those of b.
   /// @param codes  with room for 15 more, which may be written
   std::size_t (*cullCrossings)(const TrianglePair* pairs, const KdopShift* shift,
-                               const KdopShift* turned_shift, std::uint32_t* codes,
+                               const KdopShift* exchanged_shift, std::uint32_t* codes,
                                std::size_t count);
 
   /// Finds which of up to eight pairs of triangles are apart at t = 0 and stay apart

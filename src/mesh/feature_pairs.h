@@ -35,6 +35,13 @@ constexpr unsigned numVertices(ContinuousContactKind kind) {
                                                       : 4;
 }
 
+/// @brief Whether a point of such a pair belongs to a: the first two of EE, and else the
+/// first one, belong to the first feature.
+constexpr bool isPointOfA(ContinuousContactKind kind, bool first_on_a, unsigned point) {
+  const unsigned num_first = kind == ContinuousContactKind::kEdgeEdge ? 2 : 1;
+  return (point < num_first) == first_on_a;
+}
+
 /// @brief Two features of two meshes a and b, by ids.
 struct FeatureIds {
   ContinuousContactKind kind;

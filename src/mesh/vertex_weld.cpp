@@ -80,8 +80,8 @@ void forEachNeighbour(const Cell& cell, int width, Visit visit) {
 template <typename S>
 bool VertexWeld::refine(const S* coordinates) {
   bool changed = false;
-  // Vertices that have left the vertex to which they were joined, and to which others of
-  // these are joined.
+  // A vertex that has left the vertex it was joined to may join another one that has left
+  // its own. These are the ones that can be joined, by the cell of their position.
   std::unordered_map<Cell, std::vector<int>, CellHash> heads;
   for (std::size_t i = 0; i < map_.size(); ++i) {
     const int left = map_[i], own = static_cast<int>(i);
@@ -100,7 +100,7 @@ bool VertexWeld::refine(const S* coordinates) {
     });
     if (joined == own) heads[cell].push_back(own);
     map_[i] = joined;
-    // What others are joined to is joined to none, and has the least number of them.
+    // The vertex that others are joined to is joined to itself, and has the least number.
     assert(joined <= own && map_[static_cast<std::size_t>(joined)] == joined);
     changed = true;
   }

@@ -35,7 +35,8 @@ class VertexWeld {
   void refineByAll(std::size_t num_frames, RefineBy&& refineBy) {
     bool again = false;
     for (std::size_t i = 0; i < num_frames; ++i)
-      // Nothing was joined before the first frame but to vertex 0.
+      // The map begins with all vertices joined to vertex 0, so the first frame always
+      // changes it, which says nothing.
       again |= refineBy(i) && i > 0;
     // Each pass that changes the map makes the groups smaller, so that this ends.
     while (again && eps_ > 0) {

@@ -73,7 +73,7 @@ PoseRate MotionPath::rate(double t) const {
 }
 
 AccelerationBound MotionPath::acceleration(double t0, double t1) const {
-  assert(isTimeOfStep(t0) && isTimeOfStep(t1));
+  assert(isPartOfStep(t0, t1));
   switch (kind_) {
     case Kind::kTurn:
       return turnAcceleration();

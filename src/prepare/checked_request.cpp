@@ -58,9 +58,7 @@ CheckedRequest::CheckedRequest(const ContinuousContactRequest<S>& request) {
         "threads of the task arena");
   options.num_threads = request.num_threads;
   options.t_max = static_cast<double>(request.t_max);
-  if (!(options.t_max >= 0 && options.t_max <= 1))
-    throw Exception("request.t_max is " + std::to_string(options.t_max) +
-                    "; it must be in [0, 1]");
+  requireTimeLimit(options.t_max, "request.t_max");
   if (request.enable_crossings && request.query == ContinuousQuery::kAny)
     throw Exception(
         "request.enable_crossings lists all crossings, which ContinuousQuery::kAny does "

@@ -56,6 +56,12 @@ inline double requireTocErr(double toc_err, const char* name) {
   return std::max(toc_err, std::numeric_limits<double>::min());
 }
 
+inline void requireTimeLimit(double t_max, const char* name) {
+  if (!(t_max >= 0 && t_max <= 1))
+    throw Exception(std::string(name) + " is " + std::to_string(t_max) +
+                    "; it must be in [0, 1]");
+}
+
 inline void requireDistance(double distance, const char* name) {
   if (!(distance >= 0) || !std::isfinite(distance))
     throw Exception(std::string(name) +

@@ -45,8 +45,8 @@ void FeatureBatch::setCullDistance(const KdopShift* shift, double cull_distance)
   shift_ = shift;
   if (!shift) return;
   for (int j = 0; j < 16; ++j) {
-    turned_shift_.t0.half[j] = shift->t0.half[j ^ 8];
-    turned_shift_.t1.half[j] = shift->t1.half[j ^ 8];
+    exchanged_shift_.t0.half[j] = shift->t0.half[j ^ 8];
+    exchanged_shift_.t1.half[j] = shift->t1.half[j ^ 8];
   }
 }
 
@@ -132,7 +132,7 @@ void FeatureBatch::cullTriangles(double latest, StageCounts& counts) {
   // To a mesh with itself a shift adds nothing but a distance, which crossings do not
   // have.
   num_crossings_ = kernels_.cullCrossings(pairs_.get(), self_ ? nullptr : shift_,
-                                          &turned_shift_, crossings_.get(), size);
+                                          &exchanged_shift_, crossings_.get(), size);
   assert(num_crossings_ <= size && size <= kEdges * num_pairs_);
 }
 
@@ -252,7 +252,7 @@ void FeatureBatch::cullAtStart(ContinuousContactKind kind, StageCounts& counts) 
   List& list = this->list(kind);
   assert(!bends_.isAny());
   const std::size_t size = listPairs(kind, counts);
-  list.size = kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_, 0,
+  list.size = kernels_.cullFeatures(kind, pairs_.get(), shift_, &exchanged_shift_, 0,
                                     gaps_.get(), list.codes.get(), size, nullptr);
   assert(list.size <= size);
   counts.box_culled += size - list.size;
@@ -278,7 +278,7 @@ void FeatureBatch::cull(ContinuousContactKind kind, double latest, StageCounts& 
                         const PairFilter* filter) {
   List& list = this->list(kind);
   const std::size_t size = listPairs(kind, counts);
-  list.size = kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_,
+  list.size = kernels_.cullFeatures(kind, pairs_.get(), shift_, &exchanged_shift_,
                                     roundUp(latest, 0.f),
                                     isBeginning(latest) ? gaps_.get() : nullptr,
                                     list.codes.get(), size, list.windows.get());

@@ -183,7 +183,7 @@ class FeatureBatch {
   /// Whether free points come near free edges or each other.
   bool tests_points_;
   const KdopShift* shift_;
-  KdopShift turned_shift_;
+  KdopShift exchanged_shift_;
   const Kernels& kernels_;
   std::unique_ptr<TrianglePair[]> pairs_;
   /// For each triangle pair, the pairs of features to test, one bit each.

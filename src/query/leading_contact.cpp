@@ -17,9 +17,8 @@ class ContactPaths {
  public:
   ContactPaths(const FeatureContact& contact, const MeshInstance& a,
                const MeshInstance& b) {
-    const int num_first = contact.kind == ContinuousContactKind::kVertexFace ? 1 : 2;
-    for (int i = 0; i < 4; ++i) {
-      const bool on_a = (i < num_first) == contact.first_on_a;
+    for (unsigned i = 0; i < 4; ++i) {
+      const bool on_a = isPointOfA(contact.kind, contact.first_on_a, i);
       path_[i] = (on_a ? a : b).frames[contact.vertices[i]];
     }
   }

@@ -53,16 +53,14 @@ class SafeBounds {
 
  private:
   /// The bound of a vertex of a pair.
-  double& boundOf(const FeatureCandidate& pair, int i) {
-    const int num_first = pair.kind == ContinuousContactKind::kEdgeEdge ? 2 : 1;
-    const int side = (i < num_first) == pair.first_on_a ? 0 : 1;
+  double& boundOf(const FeatureCandidate& pair, unsigned i) {
+    const int side = isPointOfA(pair.kind, pair.first_on_a, i) ? 0 : 1;
     return (*bounds_[side])[pair.vertices[i]];
   }
 
   /// Whether no bound of a pair can become less.
   bool isZero(const FeatureCandidate& pair) {
-    const int count = static_cast<int>(numVertices(pair.kind));
-    for (int i = 0; i < count; ++i)
+    for (unsigned i = 0; i < numVertices(pair.kind); ++i)
       if (boundOf(pair, i) > 0) return false;
     return true;
   }

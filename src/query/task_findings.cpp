@@ -18,7 +18,7 @@ TaskFindings::TaskFindings(const QueryOptions& options, bool may_repeat,
   assert(options.toc_err > 0 && options.max_contacts > 0);
   assert(0 <= options.t_max && options.t_max <= 1);
   assert(options.min_distance >= 0 && options.min_approach_speed >= 0);
-  // Those that touch are read with what is around them.
+  // The approach speed of a contact is decided with the triangles around it.
   assert(!(options.min_approach_speed > 0) || options.surroundings);
 }
 

@@ -145,7 +145,7 @@ EmbeddedRegions findEmbeddedBodies(const MovingKdopTree& tree, const Kernels& ke
       });
   for (std::size_t i = 0; i < closed.size(); ++i) {
     const Region region = regionOf(tree, closed[i].node, closed[i].last);
-    // A body in another one would be the same triangles.
+    // A body inside of a body that was found would count its triangles twice.
     assert(region.first_place < region.last_place);
     if (!is_body[i] || found.interior[region.first_place]) continue;
     found.nodes[static_cast<std::size_t>(closed[i].node)] = 1;

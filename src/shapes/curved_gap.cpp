@@ -102,8 +102,8 @@ bool CurvedGapSearch::note(ConvexGap& out) const {
 }
 
 CurvedGapSearch::Model CurvedGapSearch::modelAt(const Vec& n, double damping) const {
-  // Where all pieces are straight along a line the model must not be so there, too. The
-  // weights of the pieces lose as many digits as this share has.
+  // Where no piece is curved along a line, the model is given this share of curvature, so
+  // that it has a maximum. The weights of the pieces lose as many digits as it has.
   constexpr double kLeastCurvature = 0x1p-13;
   Model model{};
   setAxes(n, model.axis);
@@ -164,7 +164,7 @@ CurvedGapSearch::Step CurvedGapSearch::bestStep(const Model& model) const {
                        square;
       if (w > 0 && w < 1) keep(x, y, {i, j, j}, {w, 1 - w, 0});
       for (int k = j + 1; k < count_; ++k) {
-        // Both differences from the third one vanish.
+        // The step at which the three models are equal.
         const double(&r)[2] = model.slope[k];
         const double u[2] = {p[0] - r[0], p[1] - r[1]}, v[2] = {q[0] - r[0], q[1] - r[1]},
                      determinant = u[0] * v[1] - u[1] * v[0];

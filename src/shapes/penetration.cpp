@@ -190,9 +190,9 @@ class PenetrationSearch {
       }
     for (int octant = 0; octant < 8; ++octant) {
       const int x = octant & 1, y = octant >> 1 & 1, z = octant >> 2;
-      const bool is_turned = (x + y + z) % 2 == 1;
-      add({{along[0][x], along[is_turned ? 2 : 1][is_turned ? z : y],
-            along[is_turned ? 1 : 2][is_turned ? y : z]},
+      const bool is_odd = (x + y + z) % 2 == 1;
+      add({{along[0][x], along[is_odd ? 2 : 1][is_odd ? z : y],
+            along[is_odd ? 1 : 2][is_odd ? y : z]},
            along[0][x].point,
            0,
            {0, 0, 0}},
@@ -256,7 +256,7 @@ class PenetrationSearch {
       double of_a[3], of_b[3];
       a_.setCurvature(a_.pieceAt(n), n, axis, of_a);
       b_.setCurvature(b_.pieceAt(back), back, axis, of_b);
-      // On the unit sphere the second derivative has the reach less.
+      // On the unit sphere a second derivative is that in space minus the reach.
       const double m[3] = {of_a[0] + of_b[0] - best_.depth, of_a[1] + of_b[1],
                            of_a[2] + of_b[2] - best_.depth},
                    determinant = m[0] * m[2] - m[1] * m[1], g0 = dot(axis[0], point),

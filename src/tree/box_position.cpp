@@ -29,7 +29,7 @@ Float4 roundUp(Double2 a, Double2 b, float pad) {
 }  // namespace
 
 void fitPoint(const double* point, const double (&origin)[3], float pad, Kdop16& out) {
-  // Of a point that is no number it may be none.
+  // The pad is NaN where the point is.
   assert(!(pad < 0));
   double d[8];
   kdopCoordinates({point[0] - origin[0], point[1] - origin[1], point[2] - origin[2]}, d);

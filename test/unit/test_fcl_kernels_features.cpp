@@ -114,7 +114,7 @@ struct TrianglePairBoxes {
   const KdopShift* shiftOrNull() const { return has_shift ? &shift : nullptr; }
 
   /// The same, for boxes of b's features.
-  KdopShift turnedShift() const {
+  KdopShift exchangedShift() const {
     KdopShift turned;
     for (int j = 0; j < 16; ++j) {
       turned.t0.half[j] = shift.t0.half[j ^ 8];
@@ -176,7 +176,7 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
     const std::vector<TrianglePairBoxes> boxes = boxesWithOneShift(random, kPairs);
     std::vector<TrianglePair> pairs;
     for (const TrianglePairBoxes& b : boxes) pairs.push_back(b.pair());
-    const KdopShift turned_shift = boxes[0].turnedShift();
+    const KdopShift exchanged_shift = boxes[0].exchangedShift();
     const KdopShift* shift = boxes[0].shiftOrNull();
     const float latest =
         random.index(2) ? 1.f : static_cast<float>(random.uniform(-0.1, 1));
@@ -198,7 +198,7 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
           // The shift is added to the vertex, or to edge a.
           const bool vertex_on_b = bit >= 3 && bit < 6;
           const ScalarBoxes a(boxes[k].a, vertex_on_b ? nullptr : shift),
-              b(boxes[k].b, vertex_on_b && shift ? &turned_shift : nullptr);
+              b(boxes[k].b, vertex_on_b && shift ? &exchanged_shift : nullptr);
           const auto [box_a, box_b] = boxesOf(bit, a, b);
           const detail::deformable::TimeWindow expected =
               overlapWindow<false>(box_a, box_b, nullptr);
@@ -217,7 +217,7 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
         mine.resize(codes.size() + 15);
         std::vector<detail::deformable::TimeWindow> windows(codes.size());
         const std::size_t count = kernels->cullFeatures(
-            kind, pairs.data(), shift, &turned_shift, latest,
+            kind, pairs.data(), shift, &exchanged_shift, latest,
             has_gaps ? gaps.data() : nullptr, mine.data(), codes.size(), windows.data());
         mine.resize(count);
         windows.resize(count);
@@ -253,13 +253,13 @@ TEST(FCL_KERNELS, edgesAndFacesAtStart) {
     const std::vector<TrianglePairBoxes> boxes = boxesWithOneShift(random, kPairs);
     std::vector<TrianglePair> pairs;
     for (const TrianglePairBoxes& b : boxes) pairs.push_back(b.pair());
-    const KdopShift turned_shift = boxes[0].turnedShift();
+    const KdopShift exchanged_shift = boxes[0].exchangedShift();
     const KdopShift* shift = boxes[0].shiftOrNull();
     std::vector<std::uint32_t> codes, left;
     for (std::uint32_t k = 0; k < kPairs; ++k) {
       const ScalarBoxes a(boxes[k].a, nullptr), b(boxes[k].b, nullptr);
       const ScalarBoxes moved_a(boxes[k].a, shift),
-          moved_b(boxes[k].b, shift ? &turned_shift : nullptr);
+          moved_b(boxes[k].b, shift ? &exchanged_shift : nullptr);
       for (int bit = 0; bit < 6; ++bit) {
         if (random.index(2)) continue;
         codes.push_back(featureCode(k, bit));
@@ -272,7 +272,7 @@ TEST(FCL_KERNELS, edgesAndFacesAtStart) {
     for (const Kernels* k : allSets()) {
       std::vector<std::uint32_t> mine = codes;
       mine.resize(codes.size() + 15);
-      mine.resize(k->cullCrossings(pairs.data(), shift, &turned_shift, mine.data(),
+      mine.resize(k->cullCrossings(pairs.data(), shift, &exchanged_shift, mine.data(),
                                    codes.size()));
       ASSERT_EQ(mine, left) << k->name;
     }
