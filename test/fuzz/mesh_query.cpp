@@ -64,8 +64,8 @@ void updateTopology(FuzzModel& model, const MovingMesh& mesh,
           model);
 }
 
-MeshAnswer askModels(const FuzzModel& a, const FuzzModel* b, const MeshCase& what,
-                     const Ask& ask, Outcome& outcome) {
+MeshAnswer askUnplanted(const FuzzModel& a, const FuzzModel* b, const MeshCase& what,
+                        const Ask& ask, Outcome& outcome) {
   const auto request = requestOf(what, ask);
   const Transform3<double> origin = Transform3<double>::Identity();
   Result result;
@@ -85,6 +85,12 @@ MeshAnswer askModels(const FuzzModel& a, const FuzzModel* b, const MeshCase& wha
     outcome.addToDigest(c.toc_lo);
     outcome.addToDigest(c.toc_hi);
   }
+  return answer;
+}
+
+MeshAnswer askModels(const FuzzModel& a, const FuzzModel* b, const MeshCase& what,
+                     const Ask& ask, Outcome& outcome) {
+  MeshAnswer answer = askUnplanted(a, b, what, ask, outcome);
   applyPlantedFault(answer.contacts);
   return answer;
 }

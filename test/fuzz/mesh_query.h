@@ -58,7 +58,11 @@ void updateTopology(FuzzModel& model, const MovingMesh& mesh,
 MeshAnswer askModels(const FuzzModel& a, const FuzzModel* b, const MeshCase& what,
                      const Ask& ask, Outcome& outcome);
 
-/// @brief The same with new models.
+/// @brief The same, without a fault that is planted into answers.
+MeshAnswer askUnplanted(const FuzzModel& a, const FuzzModel* b, const MeshCase& what,
+                        const Ask& ask, Outcome& outcome);
+
+/// @brief The same as askModels() with new models.
 MeshAnswer askCase(const MeshCase& mesh_case, const Ask& ask, Outcome& outcome);
 
 /// @brief Blames what the contacts of `found` lack, invent or have at other times.
