@@ -172,7 +172,7 @@ Outcome touching(std::uint64_t seed) {
   return outcome;
 }
 
-const RegisteredFamily kTouching("elementary", touching);
+const RegisteredFamily kTouching("elementary", touching, 50);
 
 }  // namespace
 }  // namespace test

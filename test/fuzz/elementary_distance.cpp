@@ -103,7 +103,7 @@ Outcome atADistance(std::uint64_t seed) {
   return outcome;
 }
 
-const RegisteredFamily kDistance("elementary-distance", atADistance);
+const RegisteredFamily kDistance("elementary-distance", atADistance, 50);
 
 }  // namespace
 }  // namespace test

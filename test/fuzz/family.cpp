@@ -30,8 +30,9 @@ std::vector<Family> families() {
   return all;
 }
 
-RegisteredFamily::RegisteredFamily(const char* name, Outcome (*run)(std::uint64_t)) {
-  registered().push_back({name, run});
+RegisteredFamily::RegisteredFamily(const char* name, Outcome (*run)(std::uint64_t),
+                                   std::uint64_t share) {
+  registered().push_back({name, run, share});
 }
 
 std::uint64_t caseSeed(std::uint64_t seed, const char* family, std::uint64_t index) {

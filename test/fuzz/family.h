@@ -82,13 +82,16 @@ struct Outcome {
 struct Family {
   const char* name;
   Outcome (*run)(std::uint64_t seed);
+  /// How many cases there are for each one that is asked for: cheap ones are many.
+  std::uint64_t share;
 };
 
 /// @brief All families, by name.
 std::vector<Family> families();
 
 struct RegisteredFamily {
-  RegisteredFamily(const char* name, Outcome (*run)(std::uint64_t seed));
+  RegisteredFamily(const char* name, Outcome (*run)(std::uint64_t seed),
+                   std::uint64_t share = 1);
 };
 
 /// @brief The seed of a case.

@@ -76,7 +76,7 @@ class Cases {
   bool isWanted(std::uint64_t i) const {
     if (options_.only) return i == 0;
     if (options_.seconds > 0) return secondsSince(begin_) < options_.seconds;
-    return i < options_.cases;
+    return i < options_.cases * family_.share;
   }
 
   void one(std::uint64_t i, Outcome& sum) {

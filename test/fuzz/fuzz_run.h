@@ -15,8 +15,8 @@ namespace test {
 
 struct RunOptions {
   std::uint64_t seed{1};
-  /// The number of cases of each family.
-  std::uint64_t cases{1000};
+  /// The number of cases of each family, times its share.
+  std::uint64_t cases{100};
   /// Of each family, in place of the number of cases, if above 0.
   double seconds{0};
   /// 0: as many as there are cores.

@@ -131,7 +131,7 @@ Outcome meshes(std::uint64_t seed) {
   return outcome;
 }
 
-const RegisteredFamily kMeshes("meshes", meshes);
+const RegisteredFamily kMeshes("meshes", meshes, 4);
 
 }  // namespace
 }  // namespace test
