@@ -94,20 +94,6 @@ void dropUnusedVertices(MovingMesh& mesh) {
   mesh = std::move(out);
 }
 
-void write(std::ostream& out, const MovingMesh& mesh, const char* name) {
-  out << "  const MovingMesh " << name << "{\n" << std::hexfloat;
-  for (const auto* frame : {&mesh.t0, &mesh.t1}) {
-    out << "      {";
-    for (const Vec& p : *frame)
-      out << "{" << p[0] << ", " << p[1] << ", " << p[2] << "}, ";
-    out << "},\n";
-  }
-  out << "      {";
-  for (const Triangle& t : mesh.triangles)
-    out << "Triangle(" << t[0] << ", " << t[1] << ", " << t[2] << "), ";
-  out << "}};\n";
-}
-
 }  // namespace
 
 MovingMesh randomFuzzMesh(Random& random, std::size_t most_triangles) {
@@ -210,12 +196,27 @@ void minimise(MeshCase& mesh_case, const std::function<bool(const MeshCase&)>& f
   if (!fails(mesh_case)) mesh_case = before;
 }
 
+std::string asCode(const MovingMesh& mesh, const std::string& name) {
+  std::ostringstream out;
+  out << "  const MovingMesh " << name << "{\n" << std::hexfloat;
+  for (const auto* frame : {&mesh.t0, &mesh.t1}) {
+    out << "      {";
+    for (const Vec& p : *frame)
+      out << "{" << p[0] << ", " << p[1] << ", " << p[2] << "}, ";
+    out << "},\n";
+  }
+  out << "      {";
+  for (const Triangle& t : mesh.triangles)
+    out << "Triangle(" << t[0] << ", " << t[1] << ", " << t[2] << "), ";
+  out << "}};\n";
+  return out.str();
+}
+
 std::string asTest(const MeshCase& mesh_case, const std::string& expected) {
   std::ostringstream out;
-  out << "  // test/unit/test_fcl_min_distance.cpp\n";
-  write(out, mesh_case.a, "a");
-  if (mesh_case.b) write(out, *mesh_case.b, "b");
-  out << "  Request request;\n  request.toc_err = " << mesh_case.toc_err
+  out << "  // test/unit/test_fcl_min_distance.cpp\n" << asCode(mesh_case.a, "a");
+  if (mesh_case.b) out << asCode(*mesh_case.b, "b");
+  out << std::hexfloat << "  Request request;\n  request.toc_err = " << mesh_case.toc_err
       << ";\n  request.min_distance = " << mesh_case.min_distance
       << ";\n  request.ignore_initially_closer = " << std::boolalpha
       << mesh_case.ignores_initially_closer << ";\n  request.t_max = " << mesh_case.t_max

@@ -64,7 +64,10 @@ std::string nameOf(const ContactId& id);
 /// @brief Removes triangles, then vertices without one, while the case fails.
 void minimise(MeshCase& mesh_case, const std::function<bool(const MeshCase&)>& fails);
 
-/// @brief The case as the body of a test of test_fcl_invariances.cpp.
+/// @brief The mesh as C++.
+std::string asCode(const MovingMesh& mesh, const std::string& name);
+
+/// @brief The case as the body of a test.
 /// @param expected  what the test expects of the `result`
 std::string asTest(const MeshCase& mesh_case, const std::string& expected);
 

@@ -247,8 +247,11 @@ class AllPairs {
                        {is_self_ || side != 0, second})] = {exact.toc_lo, exact.toc_hi};
       return;
     }
+    PointIds names;
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      names.id[i] = static_cast<std::uint32_t>(ids[i]);
     const DistanceContact c =
-        advanceToDistance(kind, {{&x[0], &x[1], &x[2], &x[3]}}, request_);
+        advanceToDistance(kind, {{&x[0], &x[1], &x[2], &x[3]}}, request_, names);
     if (!c.is_contact) return;
     PairFeature parts[2];
     for (std::size_t i = 0; i < 4 && c.points[i] >= 0; ++i) {
