@@ -37,8 +37,8 @@ std::string code(const Transform3<double>& tf) {
 
 CurvedPath pathOf(const ReferenceMotion& motion) {
   using Kind = ReferenceMotion::Kind;
-  CurvedPath path{toFcl(motion), [motion](Real t) { return motion.at(t); }, 550, 0, {},
-                  false};
+  CurvedPath path{
+      toFcl(motion), [motion](Real t) { return motion.at(t); }, 550, 0, {}, false, false};
   std::ostringstream code;
   if (motion.kind == Kind::kSpline) {
     double most = 0;
@@ -107,7 +107,8 @@ CurvedPath pathOf(const Twist& twist) {
           1410 + 40 * twist.angular.norm(),
           twist.reference.norm() + twist.linear.norm(),
           text.str(),
-          false};
+          false,
+          true};
 }
 
 std::vector<RealVector> asReal(const std::vector<Vector3<double>>& points) {

@@ -30,7 +30,7 @@ struct CurvedPath {
   double more_size;
   /// As C++.
   std::string code;
-  bool is_straight;
+  bool is_straight, is_twist;
 };
 
 CurvedPath randomPath(Random& random);

@@ -103,8 +103,8 @@ bool stillFails(const Sequence& sequence) {
 /// Removes steps; and triangles, if all steps have the same ones.
 void minimiseSequence(Sequence& sequence) {
   minimise(sequence.steps, [&] { return stillFails(sequence); });
-  for (const Step& step : sequence.steps)
-    if (step.is_topology) return;
+  for (std::size_t i = 1; i < sequence.steps.size(); ++i)
+    if (sequence.steps[i].is_topology) return;
   std::vector<Triangle> triangles = sequence.steps.front().mesh.triangles;
   const auto give = [&] {
     for (Step& step : sequence.steps) step.mesh.triangles = triangles;
