@@ -4,7 +4,7 @@
 // all of its faces, which is slow and has no special cases.
 #include "convex_piece.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -58,28 +58,49 @@ struct Simplex {
   }
 };
 
+/// The weights of sides a, b, c (as many as there are) with which a point comes nearest
+/// to the origin from p. Any weights give a point of the plane: rounding is no fault.
+bool solveWeights(int n, const RealVector& p, const RealVector (&side)[3],
+                  Real (&weight)[3]) {
+  const RealVector &a = side[0], &b = side[1], &c = side[2];
+  if (n == 3) {
+    const Real volume = a.dot(b.cross(c));
+    weight[0] = -p.dot(b.cross(c)) / volume;
+    weight[1] = -p.dot(c.cross(a)) / volume;
+    weight[2] = -p.dot(a.cross(b)) / volume;
+    return volume != 0;
+  }
+  const Real aa = a.dot(a), x = -a.dot(p);
+  if (n == 1) {
+    weight[0] = x / aa;
+    return aa > 0;
+  }
+  const Real ab = a.dot(b), bb = b.dot(b), y = -b.dot(p), area = aa * bb - ab * ab;
+  weight[0] = (x * bb - y * ab) / area;
+  weight[1] = (y * aa - x * ab) / area;
+  return area > 0;
+}
+
 /// The nearest point to the origin of the plane through some points, if it lies in their
 /// hull.
 bool nearestOfFace(const Simplex& s, unsigned mask, RealVector& nearest) {
-  int id[4], n = 0;
-  for (int i = 0; i < s.count; ++i)
-    if (mask >> i & 1U) id[n++] = i;
-  const auto at = [&](int i) -> const RealVector& {
-    return s.point[static_cast<std::size_t>(id[i])];
-  };
-  nearest = at(0);
+  std::array<std::size_t, 4> id{};
+  int n = 0;
+  for (unsigned i = 0; i < static_cast<unsigned>(s.count); ++i)
+    if (mask >> i & 1U) id[static_cast<std::size_t>(n++)] = i;
+  const RealVector p = s.point[id[0]];
+  nearest = p;
   if (n == 1) return true;
-  Eigen::Matrix<Real, 3, Eigen::Dynamic, 0, 3, 3> sides(3, n - 1);
-  for (int i = 1; i < n; ++i) sides.col(i - 1) = at(i) - at(0);
-  const auto weights = sides.colPivHouseholderQr().solve(-at(0)).eval();
-  Real rest = 1;
+  RealVector side[3];
+  for (int i = 1; i < n; ++i) side[i - 1] = s.point[id[static_cast<std::size_t>(i)]] - p;
+  Real weight[3], rest = 1;
+  if (!solveWeights(n - 1, p, side, weight)) return false;
   for (int i = 0; i < n - 1; ++i) {
-    if (!(weights[i] >= 0)) return false;
-    rest -= weights[i];
+    if (!(weight[i] >= 0)) return false;
+    rest -= weight[i];
+    nearest += weight[i] * side[i];
   }
-  if (!(rest >= 0)) return false;
-  nearest += sides * weights;
-  return true;
+  return rest >= 0;
 }
 
 /// Reduces a simplex to the face that has its nearest point.
