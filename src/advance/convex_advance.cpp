@@ -345,9 +345,12 @@ double ConvexAdvance::fixedStep(double t, const State& state, const ConvexGap& g
     best = std::max(
         best,
         step(t, state, turning(gap.direction, turnOfNearest(state, gap), t1_ - t), best));
-  for (int k = 0; k < 2; ++k) {
+  // Three corners are those of an edge of each set, or of a face and a corner: then the
+  // normal of a flat side is that direction.
+  for (int k = 0; k < 2 && gap.nearest.count < 3; ++k) {
     if (best >= t1_ - t) return best;
-    if (!set_[k]->path->isTranslation())
+    const bool is_ball = set_[k]->shape && set_[k]->shape->isBall();
+    if (!is_ball && !set_[k]->path->isTranslation())
       best = std::max(best, step(t, state, inBody(k, t, state, gap), best));
   }
   return best;
