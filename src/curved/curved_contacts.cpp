@@ -543,6 +543,24 @@ void addFeatures(const MovingBody& a, const MovingBody& b, CurvedAnswer triangle
 /// A query that needs no more takes less time than to begin with chords.
 constexpr std::uint64_t kFewBoxTests = 512;
 
+/// Looks for any contact, for a small part of the time that all contacts take. Surfaces
+/// that slide along each other are near during the whole step, and boxes that turn with
+/// them prove many times faster than chords that there is none.
+CurvedAnswer lookForAny(const MovingBody& a, const MovingBody& b, CurvedOptions wanted,
+                        int num_spans) {
+  // Of tubes of 10,000 vertices in each other, 7 box tests for each vertex prove a turn
+  // by half a degree, of tubes of 40,000 with the same gap one and a half; and 42 a turn
+  // by 90 degrees, in which chords have 16 spans. Chords take five times as long for
+  // these.
+  constexpr std::uint64_t kTestsOfVertex = 8;
+  wanted.all = false;
+  wanted.any = true;
+  wanted.proves_contacts = false;
+  wanted.most_box_tests = kTestsOfVertex * static_cast<std::uint64_t>(num_spans) *
+                          (a.numVertices() + b.numVertices());
+  return queryCurved(a, b, wanted);
+}
+
 /// All contacts of two meshes that come near each other.
 QueryAnswer contactsBy(ChordSearch& chords, const MovingBody& a, const MovingBody& b,
                        const QueryOptions& options) {
@@ -574,7 +592,11 @@ QueryAnswer queryCurvedContacts(const MovingBody& a, const MovingBody& b,
     ChordSearch chords(a, b, options);
     wanted.most_box_tests = chords.boxTestsBefore();
     if (wanted.most_box_tests > kFewBoxTests) touching = queryCurved(a, b, wanted);
-    if (touching.is_cut) return contactsBy(chords, a, b, options);
+    if (touching.is_cut) {
+      touching = lookForAny(a, b, wanted, chords.numSpans());
+      if (touching.is_cut || !touching.contacts.empty())
+        return contactsBy(chords, a, b, options);
+    }
   }
   wanted.most_box_tests = CurvedOptions().most_box_tests;
   QueryAnswer answer;
