@@ -318,7 +318,8 @@ double ConvexAdvance::step(double t, const State& state, const Separator& along,
   // comes to the end of the gap from above. At that end the gap may be 0 and round to
   // less; half of the margin is for that.
   const double least = -0.5 * tolerance_.position;
-  constexpr int kRounds = 12;
+  // From far above it halves the time in each round, then digits double.
+  constexpr int kRounds = 40;
   double upper = HUGE_VAL, beyond = gap, at = 0;
   for (int round = 0; round < kRounds; ++round) {
     at = std::min(longest, endOfTangent(at, state, along));
@@ -339,15 +340,21 @@ double ConvexAdvance::step(double t, const State& state, const Separator& along,
 /// large one does not shorten the step.
 double ConvexAdvance::fixedStep(double t, const State& state, const ConvexGap& gap) {
   if (flat_ >= 0) return step(t, state, inBody(flat_, t, state, gap), -1);
-  double best = step(t, state, inWorld(gap.direction), -1);
-  closing_speed_ = best > 0 ? (gap.gap - margin(1)) / best : 0;
-  if (gap.nearest.count > 0 && best < t1_ - t)
-    best = std::max(
-        best,
-        step(t, state, turning(gap.direction, turnOfNearest(state, gap), t1_ - t), best));
-  // Three corners are those of an edge of each set, or of a face and a corner: then the
-  // normal of a flat side is that direction.
-  for (int k = 0; k < 2 && gap.nearest.count < 3; ++k) {
+  const Separator fixed = inWorld(gap.direction);
+  double best = step(t, state, fixed, -1);
+  // At the end of the parabola.
+  closing_speed_ =
+      best > 0 ? (gap.gap - fixed.margin) / best + 0.5 * fixed.acceleration * best : 0;
+  bool follows_side = false;
+  if (gap.nearest.count > 0 && best < t1_ - t) {
+    const double following =
+        step(t, state, turning(gap.direction, turnOfNearest(state, gap), t1_ - t), best);
+    // Three corners are those of an edge of each set, or of a face and a corner: then it
+    // is the normal of a flat side.
+    follows_side = gap.nearest.count == 3 && following > best;
+    best = std::max(best, following);
+  }
+  for (int k = 0; k < 2 && !follows_side; ++k) {
     if (best >= t1_ - t) return best;
     const bool is_ball = set_[k]->shape && set_[k]->shape->isBall();
     if (!is_ball && !set_[k]->path->isTranslation())
@@ -570,8 +577,12 @@ double ConvexAdvance::proveContact(double t, double width) const {
   constexpr double kLeastErrors = 3;
   const double likely =
       closing_speed_ > 0 ? kLeastErrors * tolerance_.position / closing_speed_ : 0;
-  return provedTimeAfter(t, width, tolerance_.position, speed(), likely,
-                         [this](double time) { return provesContactAt(time); });
+  const auto isProved = [this](double time) { return provesContactAt(time); };
+  const double hi =
+      provedTimeAfter(t, width, tolerance_.position, speed(), likely, isProved);
+  if (hi > t || !(likely > 0)) return hi;
+  // They may be apart again by then.
+  return provedTimeAfter(t, width, tolerance_.position, speed(), 0, isProved);
 }
 
 bool ConvexAdvance::provesContactAt(double t) const {

@@ -170,18 +170,20 @@ class ConvexAdvance {
   double set_acceleration_[2], axis_acceleration_[2];
   /// Bound on the relative acceleration of two points.
   double acceleration_{0};
-  /// The steps that were taken, and how the nearest features turned at the last one.
+  /// The steps that were taken.
   int num_steps_{0};
   /// How fast the sets came nearer in the last step, about; 0: not known.
   double closing_speed_{0};
   /// How many steps in turn were no longer with a direction that turns.
   int num_in_vain_{0};
+  /// How the direction turned then.
   Vec turn_{0, 0, 0};
   /// How much later the direction was that this was measured by.
   double horizon_{1};
   Vec suggested_{0, 0, 0};
   /// The direction of the last gap; 0: there is none.
   Vec guess_{0, 0, 0};
+  /// The corners of that gap.
   NearestCorners nearest_{};
 };
 

@@ -163,6 +163,7 @@ class GapSearch {
       const double distance = std::sqrt(nearest.square);
       setPoints(distance);
       if (round >= kRoundsToFlats) tryFlats(nearest.point);
+      if (distance <= contact_) measureGuess(guess);
       if (distance <= contact_ || isEnough()) return out_;
       const bool is_new = addAlong(nearest.point);
       if (isEnough()) return out_;
@@ -178,6 +179,7 @@ class GapSearch {
       if (!(next.square < nearest.square)) break;
       nearest = next;
     }
+    measureGuess(guess);
     // Near the end it rounds by more than the other method.
     if (!searchCurved(out_.direction)) tryAll();
     return out_;
@@ -245,6 +247,12 @@ class GapSearch {
                         [&](const SupportPair& other) {
                           return maxNorm(d.between - other.between) == 0;
                         });
+  }
+
+  /// The search from known corners has not looked along the guess.
+  void measureGuess(const Vec& guess) {
+    const double length = norm(guess);
+    if (length > 0x1p-500) measure((1 / length) * guess);
   }
 
   /// @return whether the simplex has grown

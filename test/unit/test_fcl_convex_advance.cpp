@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "advance/convex_advance.h"
 #include "curved/body_approach.h"
 #include "curved/curved_query.h"
 #include "sanitizer.h"
@@ -153,6 +154,65 @@ TEST(FCL_CONVEX_ADVANCE, pointThroughATriangle) {
     BodyApproach approach({point, motion.path()}, still.body, {});
     EXPECT_FALSE(approach.search());
     EXPECT_LT(approach.answer().counts.steps, 100);
+  }
+}
+
+/// Boxes whose edges meet come to the contact by twice as many digits in each step; along
+/// a fixed direction some took 25.
+TEST(FCL_CONVEX_ADVANCE, edgesMeetInFewSteps) {
+  constexpr int kMostSteps = 16;
+  constexpr double kMostMean = 6;
+  double steps = 0;
+  int count = 0;
+  for (int seed = 0; seed < rounds(300); ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(7300 + seed);
+    const auto boxOf = [&random] {
+      return ConvexShape::cuboid(
+          {random.uniform(0.3, 1), random.uniform(0.3, 1), random.uniform(0.3, 1)});
+    };
+    ReferenceMotion motion[2] = {randomMotion(random, 0.3), randomMotion(random, 0.3)};
+    for (int k = 0; k < 2; ++k) {
+      motion[k].kind = ReferenceMotion::Kind::kScrew;
+      motion[k].beginning.translation()[0] += k == 0 ? -2 : 2;
+    }
+    const CurvedAnswer answer =
+        queryCurved({boxOf(), motion[0].path()}, {boxOf(), motion[1].path()}, {});
+    if (answer.contacts.empty()) continue;
+    ++count;
+    steps += static_cast<double>(answer.counts.steps);
+    EXPECT_LE(answer.counts.steps, kMostSteps);
+    EXPECT_EQ(answer.contacts[0].certainty, ContactCertainty::kCrossing);
+  }
+  EXPECT_GT(count, rounds(300) / 2);
+  EXPECT_LE(steps / count, kMostMean);
+}
+
+/// A box that leaves a floor and comes back as fast: at its last step it came nearer by
+/// nearly nothing in the mean. The proof of the contact may not wait until it has passed.
+TEST(FCL_CONVEX_ADVANCE, contactAfterAReturnIsProved) {
+  const ConvexShape box = ConvexShape::cuboid({5e-4, 5e-4, 5e-4});
+  const Body floor({{{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}}, {Triangle(0, 1, 2)}});
+  const BodyOnPath still(floor, ReferenceMotion().path());
+  for (const double gap : {1e-12, 3e-12, 1e-9, 1e-5}) {
+    SCOPED_TRACE(gap);
+    // The height is gap + 0.4 t - t^2 / 2.
+    double control[4][3] = {};
+    const double turn[4][3] = {};
+    for (int i = 0; i < 4; ++i) {
+      const double t = i - 1;
+      control[i][2] = 5e-4 + gap + 0.4 * t - 0.5 * t * t + 1. / 6;
+    }
+    const MovingBody body(box, MotionPath::spline(control, turn));
+    const MovingConvex sets[2] = {movingConvexOf(body, 0), movingConvexOf(still.body, 0)};
+    ConvexAdvance pair(sets[0], sets[1], 0, 1, BodyTolerance(body, still.body, 0));
+    double time = 0;
+    int steps = 100;
+    AdvanceCounts counts;
+    ASSERT_EQ(pair.advance(time, 1, steps, counts), AdvanceAnswer::kContact);
+    EXPECT_NEAR(time, 0.8, 4 * gap + 1e-11);
+    EXPECT_GT(pair.proveContact(time, 1e-2), time);
+    EXPECT_LE(pair.proveContact(time, 1e-2), time + 1e-10);
   }
 }
 

@@ -173,6 +173,47 @@ TEST(ConvexGap, ShallowOverlapsOfAnEllipsoidAreProvedByNewtonsMethod) {
     }
 }
 
+/// The corners that were nearest before only begin the search: those of the same sets in
+/// other poses, near or far, give the same gap.
+TEST(FCL_CONVEX_GAP, knownCornersChangeNothing) {
+  for (const char* kind : {"hull", "triangle"}) {
+    SCOPED_TRACE(kind);
+    Random random(23);
+    int with_corners = 0;
+    for (int i = 0; i < kNumPairs; ++i) {
+      SCOPED_TRACE(i);
+      Case at{{randomConvex("hull", random), randomConvex("hull", random)}, {}, {}, 0};
+      setCase(kind, random.uniform(0.01, 1), random, at);
+      constexpr double kNearly = 1 - 1e-9;
+      const auto gapOf = [&](const PosedConvex& b, const NearestCorners& known) {
+        // With this tolerance the search goes on until it has the largest gap.
+        ConvexGap gap = convexGap(at.set[0], b, at.direction, 0, 0, known);
+        for (int k = 0; k < 60 && gap.gap < kNearly * gap.distance; ++k)
+          gap = convexGap(at.set[0], b, gap.direction, std::max(gap.gap, 0.), 0, known);
+        return gap;
+      };
+      const ConvexGap before = gapOf(at.set[1], {});
+      EXPECT_NEAR(before.gap, before.distance, 1e-8);
+      with_corners += before.nearest.count > 0 ? 1 : 0;
+      for (const double way : {1e-6, 0.1, 3.}) {
+        const PosedConvex moved = at.moved(1, way * randomUnit(random));
+        const ConvexGap fresh = gapOf(moved, {}), begun = gapOf(moved, before.nearest);
+        EXPECT_EQ(fresh.depth > 0, begun.depth > 0);
+        if (fresh.depth > 0) continue;
+        EXPECT_NEAR(fresh.gap, begun.gap, 1e-8);
+      }
+      // The same corner three times.
+      NearestCorners alike = before.nearest;
+      alike.count = 3;
+      for (auto& corner : alike.corner)
+        std::copy(std::begin(before.nearest.corner[0]),
+                  std::end(before.nearest.corner[0]), corner);
+      EXPECT_NEAR(gapOf(at.set[1], alike).gap, before.gap, 1e-8);
+    }
+    EXPECT_EQ(with_corners, kNumPairs);
+  }
+}
+
 }  // namespace
 }  // namespace test
 }  // namespace fcl

@@ -115,12 +115,12 @@ struct TrianglePairBoxes {
 
   /// The same, for boxes of b's features.
   KdopShift exchangedShift() const {
-    KdopShift turned;
+    KdopShift exchanged;
     for (int j = 0; j < 16; ++j) {
-      turned.t0.half[j] = shift.t0.half[j ^ 8];
-      turned.t1.half[j] = shift.t1.half[j ^ 8];
+      exchanged.t0.half[j] = shift.t0.half[j ^ 8];
+      exchanged.t1.half[j] = shift.t1.half[j ^ 8];
     }
-    return turned;
+    return exchanged;
   }
 
   TrianglePair pair() const {
