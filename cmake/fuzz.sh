@@ -41,7 +41,12 @@ digests() {
   local code=0
   "$fuzz" --instruction-set "$1" --cases 20 --seed "$seed" "${families[@]}" \
     --digests "$out/digests" >"$out/table" || code=$?
-  [ "$code" -ne 2 ] && sort "$out/digests"
+  if [ "$code" -eq 2 ]; then return 1; fi
+  if [ "$code" -ne 0 ]; then
+    cat "$out/table" >&2
+    status=1
+  fi
+  sort "$out/digests"
 }
 digests 0 >"$out/best"
 for ((set = 1; ; ++set)); do

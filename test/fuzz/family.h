@@ -29,6 +29,8 @@ struct Outcome {
   std::uint64_t invented{0};
   /// Times more than toc_err before the true first time.
   std::uint64_t early{0};
+  /// Exceptions that the library threw.
+  std::uint64_t exceptions{0};
   /// The slowest call of the library.
   double slowest_us{0};
   /// A hash of the library's answers.

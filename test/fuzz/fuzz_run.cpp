@@ -27,6 +27,7 @@ void add(const Outcome& outcome, Outcome& sum) {
   sum.late += outcome.late;
   sum.invented += outcome.invented;
   sum.early += outcome.early;
+  sum.exceptions += outcome.exceptions;
   sum.slowest_us = std::max(sum.slowest_us, outcome.slowest_us);
 }
 
@@ -37,7 +38,7 @@ Outcome ran(const Family& family, std::uint64_t seed) {
     return family.run(seed);
   } catch (const std::exception& error) {
     Outcome outcome;
-    outcome.blame(&Outcome::missed, std::string("exception: ") + error.what() + "\n");
+    outcome.blame(&Outcome::exceptions, std::string("exception: ") + error.what() + "\n");
     return outcome;
   }
 }

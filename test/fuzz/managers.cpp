@@ -167,23 +167,17 @@ void expectAnswers(const ManagerScene& scene, const std::vector<Object*>& object
 /// The objects that are left when no further one can be taken out of the manager.
 std::string fewestObjects(ManagerScene& scene, const Request& request) {
   std::vector<Object*> left = scene.objects;
-  const std::set<Object*> all(left.begin(), left.end());
-  std::set<Object*> in_manager = all;
+  std::vector<Object*> in_manager = left;
   minimise(left, [&] {
-    const std::set<Object*> wanted(left.begin(), left.end());
-    for (Object* object : all) {
-      if (wanted.count(object) && !in_manager.count(object)) {
-        scene.manager.registerObject(object);
-        scene.manager.setFilter(object, scene.filterOf(object));
-        if (scene.thickness.count(object))
-          scene.manager.setThickness(object, scene.thickness[object]);
-        in_manager.insert(object);
-        scene.manager.setSelfCollision(scene.objects[0],
-                                       in_manager.count(scene.objects[0]) != 0);
-      } else if (!wanted.count(object) && in_manager.count(object)) {
-        scene.manager.unregisterObject(object);
-        in_manager.erase(object);
-      }
+    // In their order: the first object of a pair is the one that came first.
+    for (Object* object : in_manager) scene.manager.unregisterObject(object);
+    in_manager = left;
+    for (Object* object : left) {
+      scene.manager.registerObject(object);
+      scene.manager.setFilter(object, scene.filterOf(object));
+      if (scene.thickness.count(object))
+        scene.manager.setThickness(object, scene.thickness[object]);
+      if (object == scene.objects[0]) scene.manager.setSelfCollision(object, true);
     }
     Outcome outcome;
     expectAnswers(scene, left, request, outcome);

@@ -19,7 +19,7 @@ struct MeshTruth {
   bool is_crossing;
 };
 
-/// @brief Boxes over the whole step leave out pairs; each other pair goes to the exact
+/// @brief Boxes over the whole step leave out pairs; each other pair goes to the
 /// elementary test, or to that at a distance.
 MeshTruth bruteForce(const MeshCase& mesh_case);
 

@@ -3,6 +3,7 @@
 // Mesh cases in other forms, whose contacts follow from those of the first form. Nothing
 // but the library's answers is compared, so that faults of the brute force stay out.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <sstream>
@@ -117,6 +118,21 @@ void expectHalves(const MeshCase& what, const Contacts& truth, Outcome& outcome)
   expectSameContacts(all, truth, false, "cut at 1/2", outcome);
 }
 
+/// Whether a triangle has a feature: a face, as it is sorted in a ContactId, or an edge
+/// or a vertex with -1 after its last id.
+bool hasFeature(const MovingMesh& mesh, const std::array<int, 3>& feature) {
+  return std::any_of(
+      mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+        std::array<int, 3> ids = {static_cast<int>(t[0]), static_cast<int>(t[1]),
+                                  static_cast<int>(t[2])};
+        std::sort(ids.begin(), ids.end());
+        if (feature[2] >= 0) return ids == feature;
+        return std::all_of(feature.begin(), feature.end(), [&ids](int id) {
+          return id < 0 || std::count(ids.begin(), ids.end(), id) > 0;
+        });
+      });
+}
+
 void expectSubset(const MeshCase& what, const Contacts& truth, Random& random,
                   Outcome& outcome) {
   const MeshCase part = changed(what, [&random](MovingMesh& mesh) {
@@ -128,8 +144,8 @@ void expectSubset(const MeshCase& what, const Contacts& truth, Random& random,
   const Contacts found = contactsOf(part, outcome);
   Contacts same;
   for (const NamedBracket& c : truth)
-    if (std::any_of(found.begin(), found.end(),
-                    [&c](const NamedBracket& f) { return f.id == c.id; }))
+    if (hasFeature(c.id[1] != 0 ? part.a : part.other(), {c.id[2], c.id[3], -1}) &&
+        hasFeature(c.id[1] != 0 ? part.other() : part.a, {c.id[4], c.id[5], c.id[6]}))
       same.push_back(c);
   expectSameContacts(found, same, false, "subset of triangles", outcome);
 }
@@ -188,7 +204,8 @@ void expectThreads(const MeshCase& what, const Contacts& truth, Outcome& outcome
   }
 }
 
-/// @param planted  into the answer that the others are compared with
+/// A planted fault is in all answers. Those that are compared as they are would not show
+/// it, and are left out then.
 Outcome checked(const MeshCase& what, std::uint64_t seed) {
   Random random(seed ^ 0x1b873593);
   Outcome outcome;

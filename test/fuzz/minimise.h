@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <exception>
 #include <vector>
 
 namespace fcl {
@@ -11,11 +12,19 @@ namespace test {
 
 /// @brief Removes items, halves of the list first, then ever shorter parts, until no
 /// single item can be removed.
-/// @param fails  whether the case still fails with the items as they are now
+/// @param fails  whether the case still fails with the items as they are now. An
+/// exception says that what is left is no case.
 template <typename Item, typename Fails>
 void minimise(std::vector<Item>& items, Fails&& fails) {
   const auto at = [&items](std::size_t i) {
     return items.begin() + static_cast<std::ptrdiff_t>(i);
+  };
+  const auto stillFails = [&fails] {
+    try {
+      return fails();
+    } catch (const std::exception&) {
+      return false;
+    }
   };
   std::size_t length = std::max<std::size_t>(items.size() / 2, 1);
   while (!items.empty()) {
@@ -23,7 +32,7 @@ void minimise(std::vector<Item>& items, Fails&& fails) {
     for (std::size_t first = 0; first < items.size();) {
       const std::vector<Item> before = items;
       items.erase(at(first), at(std::min(first + length, items.size())));
-      if (fails()) {
+      if (stillFails()) {
         is_shorter = true;
       } else {
         items = before;
