@@ -69,7 +69,7 @@ AdvanceAnswer advance(double& t, double t1, double t_stop, int& steps,
 /// time that is tried is four times as long after t as the one before.
 /// @param position_error  the first time is that in which points move by this way
 /// @param speed  of the points
-/// @param likely  times that are not this long after t are not tried
+/// @param likely  times that are not this long after t are tried last
 /// @param isProved  isProved(time)
 template <typename IsProved>
 double provedTimeAfter(double t, double width, double position_error, double speed,
@@ -84,7 +84,8 @@ double provedTimeAfter(double t, double width, double position_error, double spe
     if (!(time > t)) return t;
     assert(time <= 1 && time <= t + width);
     if (!(h < std::min(likely, longest)) && isProved(time)) return time;
-    if (h >= longest) return t;
+    if (h < longest) continue;
+    return likely > 0 ? provedTimeAfter(t, width, position_error, speed, 0, isProved) : t;
   }
 }
 

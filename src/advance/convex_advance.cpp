@@ -150,10 +150,9 @@ double ConvexAdvance::Side::reachAfter(double h, const Vec& n, const Vec& change
     return most;
   }
   if (now.shape->flat()) {
-    const Vec foot = now.shape->flat()->foot(),
-              velocity_of_foot = rotated(rate.rotation, foot) + vecOf(rate.translation),
-              place = posed(now.pose, foot);
-    return dot(n, place) + h * (dot(n, velocity_of_foot) + dot(change, place));
+    const MovingPoint foot = posedPoint(now.pose, rate, now.shape->flat()->foot());
+    return dot(n, foot.position) +
+           h * (dot(n, foot.velocity) + dot(change, foot.position));
   }
   // As n . (R x + T) + h (n . (R' x + T') + n' . (R x + T)) for all points x of the core.
   const Vec later = n + h * change;
@@ -186,16 +185,13 @@ ConvexAdvance::Line ConvexAdvance::Side::farthestAfter(double h, const Vec& n,
           ? now.shape->flat()->foot()
           : now.shape->support(rotatedBack(now.pose.rotation, n + h * change) +
                                h * rotatedBack(rate.rotation, n));
-  const Vec place = posed(now.pose, point),
-            velocity_of_point = rotated(rate.rotation, point) + vecOf(rate.translation);
-  return {dot(n, place), dot(n, velocity_of_point) + dot(change, place)};
+  const MovingPoint at = posedPoint(now.pose, rate, point);
+  return {dot(n, at.position), dot(n, at.velocity) + dot(change, at.position)};
 }
 
 MovingPoint ConvexAdvance::Side::cornerOf(int piece) const {
   if (!now.shape) return {now.corner[piece], velocity[piece]};
-  const Vec point = now.shape->supportOf(piece, {0, 0, 0});
-  return {posed(now.pose, point),
-          rotated(rate.rotation, point) + vecOf(rate.translation)};
+  return posedPoint(now.pose, rate, now.shape->supportOf(piece, {0, 0, 0}));
 }
 
 Vec ConvexAdvance::Moment::center(int k) const {
@@ -338,13 +334,10 @@ double ConvexAdvance::step(double t, const State& state, const Separator& along,
 
 /// A direction that turns with a body stays at right angles to its flat sides, so that a
 /// large one does not shorten the step.
-double ConvexAdvance::fixedStep(double t, const State& state, const ConvexGap& gap) {
+double ConvexAdvance::fixedStep(double t, const State& state,
+                                const ConvexGap& gap) const {
   if (flat_ >= 0) return step(t, state, inBody(flat_, t, state, gap), -1);
-  const Separator fixed = inWorld(gap.direction);
-  double best = step(t, state, fixed, -1);
-  // At the end of the parabola.
-  closing_speed_ =
-      best > 0 ? (gap.gap - fixed.margin) / best + 0.5 * fixed.acceleration * best : 0;
+  double best = step(t, state, inWorld(gap.direction), -1);
   bool follows_side = false;
   if (gap.nearest.count > 0 && best < t1_ - t) {
     const double following =
@@ -575,14 +568,13 @@ ConvexAdvance::Answer ConvexAdvance::advance(double& t, double t_stop, int& step
 double ConvexAdvance::proveContact(double t, double width) const {
   // A pair in contact that is not proved yet has to come nearer by three errors at least.
   constexpr double kLeastErrors = 3;
-  const double likely =
-      closing_speed_ > 0 ? kLeastErrors * tolerance_.position / closing_speed_ : 0;
-  const auto isProved = [this](double time) { return provesContactAt(time); };
-  const double hi =
-      provedTimeAfter(t, width, tolerance_.position, speed(), likely, isProved);
-  if (hi > t || !(likely > 0)) return hi;
-  // They may be apart again by then.
-  return provedTimeAfter(t, width, tolerance_.position, speed(), 0, isProved);
+  const Moment now = momentAt(t);
+  const State state = stateAt(t, now);
+  const double closing = state.side[0].farthestAfter(0, guess_, {0, 0, 0}).rate +
+                         state.side[1].farthestAfter(0, -1. * guess_, {0, 0, 0}).rate;
+  return provedTimeAfter(t, width, tolerance_.position, speed(),
+                         closing > 0 ? kLeastErrors * tolerance_.position / closing : 0,
+                         [this](double time) { return provesContactAt(time); });
 }
 
 bool ConvexAdvance::provesContactAt(double t) const {

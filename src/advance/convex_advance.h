@@ -151,7 +151,7 @@ class ConvexAdvance {
   double step(double t, const State& state, const Separator& separator,
               double shorter) const;
   double longestStep(double t, const State& state, const ConvexGap& gap);
-  double fixedStep(double t, const State& state, const ConvexGap& gap);
+  double fixedStep(double t, const State& state, const ConvexGap& gap) const;
   double turningStep(double t, const State& state, const ConvexGap& gap);
   Separator turning(const Vec& direction, const Vec& change, double longest) const;
   Vec turnOfNearest(const State& state, const ConvexGap& gap) const;
@@ -172,8 +172,6 @@ class ConvexAdvance {
   double acceleration_{0};
   /// The steps that were taken.
   int num_steps_{0};
-  /// How fast the sets came nearer in the last step, about; 0: not known.
-  double closing_speed_{0};
   /// How many steps in turn were no longer with a direction that turns.
   int num_in_vain_{0};
   /// How the direction turned then.

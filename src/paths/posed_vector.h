@@ -46,7 +46,13 @@ struct MovingPoint {
   Vec position, velocity;
 };
 
-/// @brief The same with its velocity.
+/// @brief A point that is fixed in its body, with its velocity.
+/// @param rate  the derivative of the pose
+inline MovingPoint posedPoint(const Pose& pose, const PoseRate& rate, const Vec& x) {
+  return {posed(pose, x), rotated(rate.rotation, x) + vecOf(rate.translation)};
+}
+
+/// @brief A vertex that goes straight from x0 to x1 in the frame of its body.
 /// @param rate  the derivative of the pose
 inline MovingPoint posedVertex(const Pose& pose, const PoseRate& rate, const Vec& x0,
                                const Vec& x1, double t) {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <sstream>
 
+#include "mesh_forms.h"
 #include "mesh_query.h"
 
 namespace fcl {
@@ -15,21 +15,6 @@ namespace test {
 namespace {
 
 using Contacts = std::vector<NamedBracket>;
-
-template <typename Visit>
-MeshCase changed(MeshCase what, Visit&& visit) {
-  visit(what.a);
-  if (what.b) visit(*what.b);
-  return what;
-}
-
-template <typename Map>
-MeshCase mapped(const MeshCase& what, Map&& map) {
-  return changed(what, [&map](MovingMesh& mesh) {
-    for (auto* frame : {&mesh.t0, &mesh.t1})
-      for (auto& p : *frame) p = map(p);
-  });
-}
 
 Contacts contactsOf(const MeshCase& what, Outcome& outcome, int num_threads = 1) {
   Ask ask;
@@ -72,10 +57,10 @@ void expectMoved(const MeshCase& what, const Contacts& truth, Random& random,
                  Outcome& outcome) {
   const double far = std::ldexp(1, static_cast<int>(random.index(30)));
   const Vector3<double> shift(far, -2 * far, 0.5);
-  expectSameContacts(contactsOf(mapped(what,
-                                       [&](const Vector3<double>& p) {
-                                         return Vector3<double>(p + shift);
-                                       }),
+  expectSameContacts(contactsOf(mappedScene(what,
+                                            [&](const Vector3<double>& p) {
+                                              return Vector3<double>(p + shift);
+                                            }),
                                 outcome),
                      truth, false, "moved", outcome);
 }
@@ -83,7 +68,7 @@ void expectMoved(const MeshCase& what, const Contacts& truth, Random& random,
 void expectScaled(const MeshCase& what, const Contacts& truth, Random& random,
                   Outcome& outcome) {
   const double scale = std::ldexp(1, static_cast<int>(random.index(121)) - 60);
-  const MeshCase other = mapped(
+  const MeshCase other = mappedScene(
       what, [scale](const Vector3<double>& p) { return Vector3<double>(scale * p); });
   expectSameContacts(contactsOf(other, outcome), truth, true, "scaled", outcome);
 }
@@ -148,29 +133,6 @@ void expectSubset(const MeshCase& what, const Contacts& truth, Random& random,
         hasFeature(c.id[1] != 0 ? part.other() : part.a, {c.id[4], c.id[5], c.id[6]}))
       same.push_back(c);
   expectSameContacts(found, same, false, "subset of triangles", outcome);
-}
-
-template <typename T>
-void shuffle(std::vector<T>& items, Random& random) {
-  for (std::size_t i = items.size(); i > 1; --i)
-    std::swap(items[i - 1], items[random.index(i)]);
-}
-
-/// Gives the vertices of a mesh new ids. @return the old id of each
-std::vector<int> renumber(MovingMesh& mesh, Random& random) {
-  const MovingMesh old = mesh;
-  std::vector<int> old_ids(mesh.t0.size());
-  std::iota(old_ids.begin(), old_ids.end(), 0);
-  shuffle(old_ids, random);
-  std::vector<std::size_t> new_ids(old_ids.size());
-  for (std::size_t i = 0; i < old_ids.size(); ++i) {
-    const auto from = static_cast<std::size_t>(old_ids[i]);
-    new_ids[from] = i;
-    mesh.t0[i] = old.t0[from];
-    mesh.t1[i] = old.t1[from];
-  }
-  for (Triangle& t : mesh.triangles) t = {new_ids[t[0]], new_ids[t[1]], new_ids[t[2]]};
-  return old_ids;
 }
 
 void expectPermuted(const MeshCase& what, const Contacts& truth, Random& random,

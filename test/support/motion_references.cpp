@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "fcl/narrowphase/distance.h"
+#include "real_distance.h"
 
 namespace fcl {
 namespace test {
@@ -21,34 +22,12 @@ constexpr double kNever = 2;
 constexpr double kTocErr = 1e-4;
 const Real kInfinity = std::numeric_limits<Real>::infinity();
 
-Real clampedUnit(Real x) { return std::min(std::max(x, Real{0}), Real{1}); }
-
-Real pointToEdge(const RealVector& p, const RealVector& q, const RealVector& r) {
-  const RealVector u = r - q;
-  const Real square = u.squaredNorm(),
-             s = square > 0 ? clampedUnit(u.dot(p - q) / square) : 0;
-  return (p - q - s * u).norm();
-}
-
 /// The distance of a point from the inside of a triangle; infinite beside it.
 Real pointToInside(const RealVector& p, const RealVector (&f)[3]) {
   const RealVector n = (f[1] - f[0]).cross(f[2] - f[0]);
   for (int k = 0; k < 3; ++k)
     if (n.dot((f[(k + 1) % 3] - f[k]).cross(p - f[k])) < 0) return kInfinity;
   return n.norm() > 0 ? abs(n.dot(p - f[0])) / n.norm() : kInfinity;
-}
-
-/// The distance of two edges: at an end of one of them, or between the insides of both.
-Real edgeToEdge(const RealVector& p, const RealVector& q, const RealVector& r,
-                const RealVector& s) {
-  const Real ends = std::min({pointToEdge(p, r, s), pointToEdge(q, r, s),
-                              pointToEdge(r, p, q), pointToEdge(s, p, q)});
-  const RealVector u = q - p, v = s - r, n = u.cross(v), w = r - p;
-  const Real square = n.squaredNorm();
-  if (!(square > 0)) return ends;
-  const Real x = w.cross(v).dot(n) / square, y = w.cross(u).dot(n) / square;
-  const bool inside = x >= 0 && x <= 1 && y >= 0 && y <= 1;
-  return inside ? std::min(ends, abs(w.dot(n)) / sqrt(square)) : ends;
 }
 
 /// Bound on the velocity of points within `reach` of the origin of the body.
@@ -116,7 +95,8 @@ Real triangleDistance(const RealVector (&a)[3], const RealVector (&b)[3]) {
   for (int i = 0; i < 3; ++i) {
     least = std::min({least, pointToInside(a[i], b), pointToInside(b[i], a)});
     for (int j = 0; j < 3; ++j)
-      least = std::min(least, edgeToEdge(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]));
+      least =
+          std::min(least, segmentToSegment(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]));
   }
   return least;
 }

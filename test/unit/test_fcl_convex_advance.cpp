@@ -188,6 +188,32 @@ TEST(FCL_CONVEX_ADVANCE, edgesMeetInFewSteps) {
   EXPECT_LE(steps / count, kMostMean);
 }
 
+/// Times that seem too early come last, but they come: features may be apart again later.
+TEST(FCL_CONVEX_ADVANCE, unlikelyTimesAreTriedLast) {
+  constexpr double kWidth = 1e-2, kError = 1e-14, kSpeed = 1;
+  double latest = 1, earliest = 0;
+  int count = 0;
+  const auto find = [&](double likely) {
+    count = 0;
+    return provedTimeAfter(0, kWidth, kError, kSpeed, likely, [&](double time) {
+      ++count;
+      return earliest <= time && time <= latest;
+    });
+  };
+  for (const double likely : {0., 1e-10, 1e-3, 1.}) {
+    SCOPED_TRACE(likely);
+    earliest = 0;
+    latest = 1e-12;
+    EXPECT_LE(find(likely), latest);
+    EXPECT_GT(find(likely), 0);
+    latest = 1;
+    EXPECT_GE(find(likely), std::min(likely, kWidth));
+    EXPECT_EQ(count, 1);
+    earliest = 1;
+    EXPECT_EQ(find(likely), 0);
+  }
+}
+
 /// A box that leaves a floor and comes back as fast: at its last step it came nearer by
 /// nearly nothing in the mean. The proof of the contact may not wait until it has passed.
 TEST(FCL_CONVEX_ADVANCE, contactAfterAReturnIsProved) {

@@ -22,6 +22,7 @@
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/utility.h"
 #include "feature_test_calls.h"
+#include "mesh_forms.h"
 #include "moving_mesh.h"
 #include "test_models.h"
 
@@ -343,46 +344,6 @@ void forEachScene(
     if (testing::Test::HasFailure()) return;
   }
   EXPECT_GT(contacts, 5000U);
-}
-
-/// The scene after visit(mesh) for each mesh.
-template <typename Visit>
-GridScene changed(GridScene scene, Visit&& visit) {
-  visit(scene.a);
-  if (scene.b) visit(*scene.b);
-  return scene;
-}
-
-/// The scene with f applied to every position.
-template <typename F>
-GridScene mappedScene(const GridScene& scene, F&& f) {
-  return changed(scene, [&f](MovingMesh& mesh) {
-    for (auto* frame : {&mesh.t0, &mesh.t1})
-      for (auto& p : *frame) p = f(p);
-  });
-}
-
-template <typename T>
-void shuffle(std::vector<T>& items, Random& random) {
-  for (std::size_t i = items.size(); i > 1; --i)
-    std::swap(items[i - 1], items[random.index(i)]);
-}
-
-/// Gives the vertices new ids; returns the old id of each.
-Ids renumber(MovingMesh& mesh, Random& random) {
-  const MovingMesh old = mesh;
-  Ids old_ids(mesh.t0.size());
-  std::iota(old_ids.begin(), old_ids.end(), 0);
-  shuffle(old_ids, random);
-  std::vector<std::size_t> new_ids(old_ids.size());
-  for (std::size_t i = 0; i < old_ids.size(); ++i) {
-    const auto from = static_cast<std::size_t>(old_ids[i]);
-    new_ids[from] = i;
-    mesh.t0[i] = old.t0[from];
-    mesh.t1[i] = old.t1[from];
-  }
-  for (Triangle& t : mesh.triangles) t = {new_ids[t[0]], new_ids[t[1]], new_ids[t[2]]};
-  return old_ids;
 }
 
 TEST(SceneInvariances, VertexIds) {

@@ -19,6 +19,7 @@
 #include "fcl/narrowphase/collision.h"
 #include "generated_scenes.h"
 #include "mesh/mesh_topology.h"
+#include "mesh_forms.h"
 #include "test_models.h"
 #include "tree_checks.h"
 
@@ -54,11 +55,6 @@ struct ChangingMesh {
 
 ChangingMesh changing(const TestMesh& mesh) {
   return {mesh.triangles, mesh.vertices, {}};
-}
-
-void shuffle(std::vector<std::size_t>& order, Random& random) {
-  for (std::size_t i = order.size(); i > 1; --i)
-    std::swap(order[i - 1], order[random.index(i)]);
 }
 
 Points shakenBy(const Points& points, double half, Random& random) {

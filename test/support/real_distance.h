@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Distances by textbook formulas in Real.
-#ifndef FCL_FUZZ_REAL_DISTANCE_H
-#define FCL_FUZZ_REAL_DISTANCE_H
+#ifndef FCL_TEST_SUPPORT_REAL_DISTANCE_H
+#define FCL_TEST_SUPPORT_REAL_DISTANCE_H
 
 #include <algorithm>
 
